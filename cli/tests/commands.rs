@@ -102,7 +102,10 @@ fn help_has_examples() {
         let arguments: Vec<&str> = [command, "--help"].into_iter().filter(|a| !a.is_empty()).collect();
         let text = out(&check(&arguments, 0));
         assert!(text.contains("Examples:\n"), "armgen {arguments:?}");
-        insta::assert_snapshot!(format!("help {command}").trim().replace(' ', "_"), text);
+        let name = format!("commands__help {command}").trim().replace(' ', "_");
+        insta::with_settings!({ prepend_module_to_snapshot => false }, {
+            insta::assert_snapshot!(name, text);
+        });
     }
 }
 

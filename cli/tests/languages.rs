@@ -28,6 +28,7 @@ fn check(folder: &PathBuf, arguments: &[&str], code: i32) -> String {
 }
 
 #[test]
+#[ignore = "wide"]
 fn every_language_is_written_and_verified() {
     let folder = folder("languages");
     for (language, out, beside) in [
@@ -46,6 +47,7 @@ fn every_language_is_written_and_verified() {
 }
 
 #[test]
+#[ignore = "wide"]
 fn a_library_stands_beside_python_and_batches_in_c() {
     let folder = folder("native_and_batch");
     check(&folder, &["generate", &scara(), "--language", "python", "--out", "arm.py", "--native", "--functions", "gravity"], 0);

@@ -136,6 +136,7 @@ fn nearly_zero_is_not_zero() {
 
 /// Compiles what is emitted and runs the judge: it asks every module for the postures of thousands of poses.
 #[test]
+#[ignore = "wide"]
 fn emitted_modules_find_every_posture() {
     let mut project = Project::new("inverse_kinematics");
     let mut all = robots();
@@ -151,6 +152,7 @@ fn emitted_modules_find_every_posture() {
 
 /// Errors in the blocks for slides: a branch that is lost, a sign, a degenerate case that is dropped.
 #[test]
+#[ignore = "wide"]
 fn planted_errors_are_seen() {
     let errors = [
         ("gantry", ["turns.turns.iter().enumerate().take(turns.count)", "turns.turns.iter().enumerate().take(1)"]),
@@ -176,6 +178,7 @@ fn planted_errors_are_seen() {
 
 /// Arms of one to five joints given a whole pose.
 #[test]
+#[ignore = "wide"]
 fn fewer_joints_than_rows() {
     let mut project = Project::new("inverse_kinematics_few");
     for (name, text) in few() {

@@ -1,6 +1,6 @@
 //! Files of the project that are written from the catalogue of emitted functions, and must be what it says.
 //!
-//! A change that is meant is accepted by `INSTA_UPDATE=always cargo test -p armgen-codegen --test written_files`.
+//! A change that is meant is accepted by `INSTA_UPDATE=always cargo test -p armgen-codegen --test all written_files`.
 
 use std::path::Path;
 

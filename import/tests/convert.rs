@@ -1,6 +1,6 @@
 //! An arm is the same in rows of every convention.
 
-mod common;
+use crate::common;
 
 use armgen_codegen::description::Convention::{self, Modified, Standard, Urdf};
 use armgen_codegen::diagnostic::Colour;

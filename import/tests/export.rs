@@ -1,6 +1,6 @@
 //! What is exported and imported is the same arm, and the same text from then on.
 
-mod common;
+use crate::common;
 
 use std::path::Path;
 

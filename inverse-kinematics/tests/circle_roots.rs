@@ -3,9 +3,6 @@
 // The same text is compiled for both scalars.
 #![allow(clippy::unnecessary_cast)]
 
-#[macro_use]
-mod common;
-
 in_both_scalars! {
     use std::f64::consts::{PI, TAU};
 

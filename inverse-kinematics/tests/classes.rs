@@ -1,8 +1,5 @@
 //! The constructions of whole arms, with made-up arms of each class: the loop is closed, the original posture is found, counts are even.
 
-#[macro_use]
-mod common;
-
 in_both_scalars! {
     #[allow(unreachable_pub, dead_code)]
     mod arm {

@@ -1,8 +1,5 @@
 //! Blocks 1 to 5: each alone, at random, degenerate and nearly degenerate arguments, against the equation that it solves.
 
-#[macro_use]
-mod common;
-
 in_both_scalars! {
     /// A handful of roundings.
     const FEW: Real = 32.0 * UNIT_ROUNDOFF;

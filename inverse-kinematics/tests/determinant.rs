@@ -1,8 +1,5 @@
 //! Block 8: general arms, one prismatic joint anywhere, two neighbours.
 
-#[macro_use]
-mod common;
-
 in_both_scalars! {
     #[allow(unreachable_pub, dead_code)]
     mod arm {

@@ -1,8 +1,5 @@
 //! Arms with fewer joints than a pose has rows, by the blocks alone: folds, joints that can move while the end effector stays, poses beside.
 
-#[macro_use]
-mod common;
-
 in_both_scalars! {
     #[allow(unreachable_pub, dead_code)]
     mod arm {

@@ -2,9 +2,6 @@
 
 #![allow(clippy::neg_cmp_op_on_partial_ord)]
 
-#[macro_use]
-mod common;
-
 mod double {
     use crate::common::Random;
     use armgen_inverse_kinematics::f64::*;

@@ -1,8 +1,5 @@
 //! Block 6 in all its cases, with made-up arms: the original posture is found, every posture reaches, counts are even.
 
-#[macro_use]
-mod common;
-
 in_both_scalars! {
     fn real(random: &mut Random, low: f64, high: f64) -> Real {
         random.between(low, high) as Real

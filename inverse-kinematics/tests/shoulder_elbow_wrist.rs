@@ -1,8 +1,5 @@
 //! Seven joints at a swivel angle: every posture found, with its pose and its angle; the elbow turns by as much as the angle does.
 
-#[macro_use]
-mod common;
-
 in_both_scalars! {
     #[allow(unreachable_pub, dead_code)]
     mod arm {

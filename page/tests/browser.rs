@@ -12,8 +12,6 @@ mod driver;
 mod equations;
 #[path = "browser/figures.rs"]
 mod figures;
-#[path = "../../tests/src/installed.rs"]
-mod installed;
 #[path = "browser/logs.rs"]
 mod logs;
 #[path = "browser/pages.rs"]
@@ -64,6 +62,7 @@ fn numbers(texts: &Value) -> Vec<f64> {
 }
 
 #[test]
+#[ignore = "wide"]
 fn shown_numbers_have_the_bits_of_rust() {
     let mut shown = Vec::new();
     let mut moved: Vec<(Source, Vec<State>)> = Vec::new();
@@ -117,6 +116,7 @@ fn check_frames(place: &str, frames: &Value, values: &[f64]) {
 
 /// An arm without mass has its frames, its Jacobian and nothing of the dynamics.
 #[test]
+#[ignore = "wide"]
 fn an_arm_without_mass_has_its_kinematics() {
     let row = |name: &str| format!("  - {{name: {name}, type: revolute, a: 0.4, alpha: 0, d: 0, theta: 0, link: {{mass: 0}}}}\n");
     let text = format!("name: light\nconvention: standard\ngravity: [0, 0, -9.81]\njoints:\n{}{}", row("one"), row("two"));
@@ -130,6 +130,7 @@ fn an_arm_without_mass_has_its_kinematics() {
 
 /// Texts of files that would be markup are texts, and nothing of them runs, with the policy removed as well.
 #[test]
+#[ignore = "wide"]
 fn hostile_texts_are_inert() {
     if driver::program().is_none() {
         return;
@@ -174,6 +175,7 @@ fn hostile_texts_are_inert() {
 
 /// Arms of one, twelve and thirty-two joints, the first of them prismatic, in modified rows, with limits.
 #[test]
+#[ignore = "wide"]
 fn short_and_long_arms_have_pages() {
     let size = |source: &Source| std::fs::metadata(written(source)).expect("a file").len();
     for (name, most) in [("scara", 250_000), ("panda7", 1_000_000)] {

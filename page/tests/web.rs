@@ -1,12 +1,12 @@
 //! The files of `page/web` under the tests that stand beside them, by Node, and their types, by TypeScript; without these a line says so, and
 //! the test passes (`tests/src/installed.rs`).
 
-#[path = "../../tests/src/installed.rs"]
-mod installed;
+use crate::installed;
 
 use std::process::Command;
 
 #[test]
+#[ignore = "wide"]
 fn the_files_of_the_script_pass_their_own_tests() {
     let folder = concat!(env!("CARGO_MANIFEST_DIR"), "/web/tests");
     let mut files: Vec<_> = std::fs::read_dir(folder).expect("the tests").map(|entry| entry.expect("an entry").path()).collect();
@@ -19,6 +19,7 @@ fn the_files_of_the_script_pass_their_own_tests() {
 }
 
 #[test]
+#[ignore = "wide"]
 fn the_types_that_the_files_of_the_script_say_are_theirs() {
     let folder = concat!(env!("CARGO_MANIFEST_DIR"), "/web");
     // "Version 5.9.3"; older ones read fewer of the types that JSDoc can say.

@@ -1,6 +1,6 @@
 //! Not one allocation in any step of a controller, a trajectory or CLIK, error paths included.
 
-mod common;
+use crate::common;
 
 use allocation_counter::measure;
 use armgen_runtime::{

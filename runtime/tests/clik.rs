@@ -2,7 +2,7 @@
 //!
 //! Largest errors with five digits are those of the technical project, docs/technical-project.md.
 
-mod common;
+use crate::common;
 
 use armgen_runtime::{
     clik::{

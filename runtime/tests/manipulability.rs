@@ -1,6 +1,6 @@
 //! Manipulability of the SCARA at three postures, and the identities behind it.
 
-mod common;
+use crate::common;
 
 use armgen_runtime::{
     manipulability::{

@@ -1,6 +1,6 @@
 //! The hand-written SCARA against the check values of its closed forms: what the other tests stand on.
 
-mod common;
+use crate::common;
 
 use armgen_runtime::{
     reference::Pose,

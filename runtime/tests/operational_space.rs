@@ -2,7 +2,7 @@
 //!
 //! Stored errors are those of the technical project, docs/technical-project.md.
 
-mod common;
+use crate::common;
 
 use armgen_runtime::{
     control::OperationalSpace,

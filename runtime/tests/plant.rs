@@ -1,6 +1,6 @@
 //! The simulated plant: integration, energies, sensors, speed.
 
-mod common;
+use crate::common;
 
 use armgen_runtime::{
     control::OperationalSpace,

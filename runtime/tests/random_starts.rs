@@ -1,6 +1,6 @@
 //! From anywhere, to anywhere: rates stay bounded, and every end has a name.
 
-mod common;
+use crate::common;
 
 use armgen_runtime::{
     clik::{Clik, ClikError, DampedLeastSquares, Integration, JacobianTranspose, JointLimits, Outcome, SecondOrder},

@@ -1,6 +1,6 @@
 //! What controllers refuse, limit and hold back.
 
-mod common;
+use crate::common;
 
 use armgen_runtime::{
     clik::{Clik, Integration, JacobianInverse, JointLimits, Outcome, WithinRange},

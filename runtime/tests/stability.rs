@@ -2,7 +2,7 @@
 //!
 //! Stored radii and periods are those of the technical project, docs/technical-project.md.
 
-mod common;
+use crate::common;
 
 use armgen_runtime::{
     control::{Adaptive, BoundaryLayer, Interval, InverseDynamics, NullSpace, OperationalSpace, PdGravity, Robust},

@@ -1,6 +1,6 @@
 //! The ghost as planned: its path against a table, closed forms of its extremes, and requests that cannot be met.
 
-mod common;
+use crate::common;
 
 use armgen_runtime::{
     orientation::rotation,

@@ -134,6 +134,7 @@ fn check(robot: &str, scalar: Scalar, folder: &str) {
 }
 
 #[test]
+#[ignore = "wide"]
 fn a_c_program_links_and_finds_the_values_of_the_scara() {
     check("scara.yaml", Scalar::F64, "c_face_f64");
     check("scara.yaml", Scalar::F32, "c_face_f32");

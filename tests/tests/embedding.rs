@@ -37,6 +37,7 @@ fn generate(text: &str, scalar: Scalar) -> String {
 
 /// Copied into an empty crate with libm alone: as `mod robot;`, inside `include!`, f64 and f32 side by side, with warnings denied.
 #[test]
+#[ignore = "wide"]
 fn a_copied_file_compiles_alone() {
     let state = technical_project::check_state();
     for edition in ["2021", "2024"] {
@@ -96,6 +97,7 @@ struct State {
 
 /// A project that depends on `armgen-generated`, whatever robot stands in robot.yaml; without and with the runtime's traits.
 #[test]
+#[ignore = "wide"]
 fn the_generated_crate_is_a_dependency() {
     let project = stranger("depends");
     let dependencies = format!(
@@ -144,6 +146,7 @@ pub fn hold_by_traits(q: Real) -> [Real; DOF] {
 
 /// A project with a robot.yaml and a build script of its own, in two scalars.
 #[test]
+#[ignore = "wide"]
 fn a_build_script_generates_its_own_robot() {
     let project = stranger("generates");
     let dependencies = format!(
@@ -192,6 +195,7 @@ fn main() {
 
 /// The crate `generated` with a robot.yaml beside it, in a workspace of its own: when its build script runs, and what a wrong file gets.
 #[test]
+#[ignore = "wide"]
 fn the_robot_follows_its_file_and_nothing_else() {
     let project = stranger("workspace");
     let own = std::fs::read_to_string(workspace().join("Cargo.toml")).expect("the manifest");
@@ -282,6 +286,7 @@ fn follow_the_readme(section: &str, name: &str, more: &[(&str, &str)]) -> Vec<f6
 }
 
 #[test]
+#[ignore = "wide"]
 fn the_snippets_of_the_readme_do_what_they_say() {
     let gravity = |text: &str| {
         let model = Description::read(text).and_then(|d| d.model()).expect("valid");

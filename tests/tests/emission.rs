@@ -21,6 +21,7 @@ use syn::visit::{self, Visit};
 
 /// What the generator says that a function costs is what stands in the text.
 #[test]
+#[ignore = "wide"]
 fn the_text_costs_what_the_program_says() {
     for robot in ALL.iter().filter(|robot| !robot.narrow) {
         let counted = count(robot.text);
@@ -72,6 +73,7 @@ fn generate(name: &str, text: &str) -> String {
 
 /// Twenty processes in as many folders, with another environment each, and the build script long before: the same bytes.
 #[test]
+#[ignore = "wide"]
 fn generations_are_the_same_to_the_byte() {
     let root = Path::new(env!("CARGO_TARGET_TMPDIR")).join("generations");
     for (module, times) in [("scara", 20), ("everything", 6), ("base_set", 4), ("panda7", 1)] {
@@ -132,6 +134,7 @@ fn without_header(text: &str) -> String {
 }
 
 #[test]
+#[ignore = "wide"]
 fn an_angle_may_be_spelled_in_any_way() {
     let mut spellings = 0;
     for module in ["puma560", "base_set", "modified_prismatic"] {

@@ -58,6 +58,7 @@ fn agree_with_the_reference_values() {
 }
 
 #[test]
+#[ignore = "wide"]
 fn agree_with_the_oracle() {
     for robot in ALL {
         for seed in 0..20 {
@@ -230,6 +231,7 @@ impl Functions for Planted<'_> {
 }
 
 #[test]
+#[ignore = "wide"]
 fn planted_errors_are_seen() {
     for robot in ["scara", "scara4", "base_set"].map(emitted) {
         let text = robot.description();

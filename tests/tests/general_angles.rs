@@ -67,6 +67,7 @@ fn constants_of_prismatic_arms_grow_with_their_joints() {
 }
 
 #[test]
+#[ignore = "wide"]
 fn constants_of_mixed_arms_grow_with_their_joints() {
     // Lengths 52, 969 and 10007 thousand; 32 joints have 56078. Those of 4 joints are almost all multiplied out.
     check("rp", [2, 4, 8], &["equations_of_motion", "base_regressor"], 20);

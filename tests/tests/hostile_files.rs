@@ -83,6 +83,7 @@ fn every_prefix_of_a_file_is_read() {
 }
 
 #[test]
+#[ignore = "wide"]
 fn files_with_a_changed_byte_are_read_and_generated() {
     let debug = cfg!(debug_assertions);
     change("../robots/scara.yaml", 1, if debug { 1500 } else { 20_000 }, if debug { 6 } else { 100 });

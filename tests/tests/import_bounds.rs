@@ -110,6 +110,7 @@ fn judged(text: &str, random: &mut Random) -> [f64; 3] {
 }
 
 #[test]
+#[ignore = "wide"]
 fn bounds_are_never_exceeded_and_never_idle() {
     let mut random = Random::new(7);
     let mut largest = [0.0; 3];

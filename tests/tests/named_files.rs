@@ -54,26 +54,52 @@ fn files(folder: &Path, found: &mut Vec<PathBuf>) {
     }
 }
 
-/// A test that `cargo test` leaves out is run by somebody: CONTRIBUTING.md has the command of its target.
+/// Every test has a tier: *fast* without a mark, *wide* by `#[ignore = "wide"]`, *full* by `#[ignore = "full: REASON"]`. `.ci/run` skips
+/// the full tests by name, and CONTRIBUTING.md has a command for each of them.
 #[test]
 fn ignored_tests_have_a_command() {
     let root = Path::new(env!("CARGO_MANIFEST_DIR")).parent().expect("in the workspace");
     let page = fs::read_to_string(root.join("CONTRIBUTING.md")).expect("a page");
-    let commands: Vec<&str> = page.lines().filter(|line| line.contains("cargo test") && line.contains("-- --ignored")).collect();
+    let script = fs::read_to_string(root.join(".ci/run")).expect("a script");
+    let skipped: Vec<&str> = script.split("--skip ").skip(1).filter_map(|rest| rest.split_whitespace().next()).collect();
     let mut all = Vec::new();
     files(root, &mut all);
-    let mut ignored = 0;
+    let (mut wide, mut full) = (0, Vec::new());
     for path in all {
         let text = fs::read_to_string(&path).expect("a text");
-        ignored += text.lines().filter(|line| line.trim_start().starts_with("#[ignore")).count();
-        if text.lines().any(|line| line.trim_start().starts_with("#[ignore")) {
-            // CRATE/tests/TARGET.rs or CRATE/tests/TARGET/FILE.rs.
-            let relative = path.strip_prefix(root).expect("in the project").to_string_lossy().into_owned();
-            let (package, target) = relative.split_once("/tests/").expect("an ignored test stands in a folder of tests");
-            let target = target.split(['/', '.']).next().expect("a name");
-            let wanted = format!("-p armgen-{package} --test {target} ");
-            assert!(commands.iter().any(|command| command.contains(&wanted)), "{relative}: no command with `{wanted}`");
+        let mut lines = text.lines().map(str::trim);
+        while let Some(line) = lines.next() {
+            if line == "#[ignore = \"wide\"]" {
+                wide += 1;
+            } else if line.starts_with("#[ignore") {
+                assert!(line.starts_with("#[ignore = \"full: "), "{}: `{line}` is no tier", path.display());
+                let name = lines.find_map(|line| line.strip_prefix("fn ")?.split('(').next()).expect("a test");
+                assert!(skipped.contains(&name), ".ci/run runs {name}, which is full");
+                assert!(page.contains(&format!(" {name}`")), "CONTRIBUTING.md has no command for {name}");
+                full.push(name.to_owned());
+            }
         }
     }
-    assert!(ignored > 3, "{ignored} tests are ignored: their form has changed");
+    for name in &skipped {
+        assert!(full.iter().any(|full| full == name), ".ci/run skips {name}, which is not full");
+    }
+    assert!(wide > 50 && full.len() > 3, "{wide} wide and {} full tests: their form has changed", full.len());
+}
+
+/// A crate's integration tests are one program, so a file without a line in `tests/main.rs` would not be compiled.
+#[test]
+fn files_of_tests_are_modules() {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR")).parent().expect("in the workspace");
+    let mut all = Vec::new();
+    files(root, &mut all);
+    let mut programs = 0;
+    for main in all.iter().filter(|path| path.ends_with("tests/main.rs")) {
+        programs += 1;
+        let text = fs::read_to_string(main).expect("a text");
+        for path in all.iter().filter(|path| path.parent() == main.parent() && *path != main) {
+            let module = format!("mod {};", path.file_stem().expect("a name").to_string_lossy());
+            assert!(text.lines().any(|line| line == module), "{}: no line `{module}`", main.display());
+        }
+    }
+    assert!(programs > 5, "{programs} crates have one program of tests: their form has changed");
 }

@@ -1,7 +1,7 @@
 //! What a module computes does not depend on the passes that made it cheap: without any one of them, and without all, it agrees with the stored
 //! reference values as with all of them, and with the module of all passes but for the last digits.
 //!
-//! `cargo test -p armgen-tests --test passes -- --nocapture` prints by how much: the table in docs/passes.md.
+//! `cargo test -p armgen-tests --test all passes -- --ignored --nocapture` prints by how much: the table in docs/passes.md.
 
 use armgen_codegen::pass::{Pass, Passes};
 use armgen_codegen::schedule::{Options, Selection};
@@ -79,6 +79,7 @@ fn difference(all: &Interpreted, other: &Interpreted, samples: &[Sample]) -> f64
 }
 
 #[test]
+#[ignore = "wide"]
 fn every_module_agrees_with_the_reference_without_any_pass() {
     let none_and_all = [("all passes".to_owned(), Passes::NONE), ("without any".to_owned(), Passes::all())];
     let each = Pass::ALL.map(|pass| (format!("without `{}`", pass.name()), [pass].into_iter().collect()));

@@ -31,6 +31,7 @@ fn arms() -> impl Iterator<Item = u64> {
 }
 
 #[test]
+#[ignore = "wide"]
 fn arms_of_poses_agree_with_the_oracle() {
     for seed in arms() {
         let text = random::posed_arm(seed);
@@ -46,6 +47,7 @@ fn arms_of_poses_agree_with_the_oracle() {
 }
 
 #[test]
+#[ignore = "wide"]
 fn arms_of_poses_equal_their_equations_exactly() {
     for seed in arms() {
         let text = random::posed_arm(seed);

@@ -300,6 +300,7 @@ fn what_is_no_path_is_said() {
 
 /// The program that stands in docs/inverse-kinematics.md, and the emitted test, in a project of their own.
 #[test]
+#[ignore = "wide"]
 fn the_program_of_the_page_runs() {
     let page = std::fs::read_to_string(workspace().join("docs/inverse-kinematics.md")).expect("the page");
     let (_, program) = page.split_once("```rust\n").expect("a program");

@@ -14,6 +14,7 @@ use armgen_tests::random;
 const ARMS: u64 = 64;
 
 #[test]
+#[ignore = "wide"]
 fn random_arms_agree_with_the_oracle() {
     // More of them on request, for whoever has changed a derivation.
     let arms = std::env::var("ARMGEN_RANDOM_ARMS").map_or(ARMS, |text| text.parse().expect("ARMGEN_RANDOM_ARMS is a number"));
@@ -35,6 +36,7 @@ fn random_arms_agree_with_the_oracle() {
 
 /// Each pass alone, and all, left out: the same functions at other costs.
 #[test]
+#[ignore = "wide"]
 fn arms_without_a_pass_agree_with_the_oracle() {
     let each = Pass::ALL.map(|pass| (pass.name(), [pass].into_iter().collect::<Passes>()));
     for (k, (name, without)) in each.into_iter().chain([("any", Passes::all())]).enumerate() {

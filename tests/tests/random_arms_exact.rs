@@ -89,6 +89,7 @@ impl fmt::Display for Seen {
 }
 
 #[test]
+#[ignore = "wide"]
 fn random_arms_equal_their_equations_and_keep_every_identity_exactly() {
     let arms = asked("ARMGEN_RANDOM_ARMS", ARMS);
     let first = asked("ARMGEN_FIRST_ARM", 0);
@@ -118,6 +119,7 @@ fn arms_that_took_a_mend_stay_mended() {
 
 /// Products of rotations by general angles have no short form: a seed for each number of joints.
 #[test]
+#[ignore = "wide"]
 fn arms_with_general_angles_alone_equal_their_equations() {
     for (seed, joints) in [(1, 4), (2, 5), (3, 6), (4, 7), (5, 9)] {
         let text = random::arm_with_general_angles(&format!("general_{joints}"), joints, &mut Random::new(seed));
@@ -199,6 +201,7 @@ fn certify_arm(seed: u64, joints: usize, text: &str, seen: &mut Seen) {
 }
 
 #[test]
+#[ignore = "wide"]
 fn random_arms_compile_and_agree_with_the_oracle() {
     let (from, arms) = (asked("ARMGEN_FIRST_ARM", 0), asked("ARMGEN_COMPILED_ARMS", COMPILED));
     for first in (from..from + arms).step_by(IN_A_CRATE as usize) {

@@ -134,6 +134,7 @@ fn check(what: &str, text: &str) {
 }
 
 #[test]
+#[ignore = "wide"]
 fn every_formula_has_the_value_of_the_program() {
     check("roots", ROOTS);
     check("tool", TOOL);
@@ -145,6 +146,7 @@ fn every_formula_has_the_value_of_the_program() {
 }
 
 #[test]
+#[ignore = "wide"]
 fn formulas_of_random_arms_have_the_values_of_their_programs() {
     // Few joints: what is checked here are constants, and a determinant with names takes its time.
     for seed in 0..12 {

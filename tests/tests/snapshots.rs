@@ -6,7 +6,7 @@
 //! - `ROBOT.module`, of the two SCARAs: the emitted module: the *form* for machines;
 //! - `scara.LANGUAGE`: the module of the SCARA in that language.
 //!
-//! A change that is meant is accepted by `INSTA_UPDATE=always cargo test -p armgen-tests --test snapshots` and goes with its cause.
+//! A change that is meant is accepted by `INSTA_UPDATE=always cargo test -p armgen-tests --test all snapshots` and goes with its cause.
 
 use std::fmt::Write;
 

@@ -1,7 +1,7 @@
 //! Modules that somebody would write who wants a wrong one verified, or one that runs code: each is refused, and for the reason that it was
 //! written against. What an emitted module may hold stands in docs/certificate.md.
 
-mod common;
+use crate::common;
 
 use std::collections::BTreeMap;
 
@@ -169,6 +169,7 @@ fn what_is_not_written_as_armgen_writes_it_is_refused() {
 }
 
 #[test]
+#[ignore = "wide"]
 fn two_readings_of_one_text_are_refused() {
     let given = scara();
     let module = &given.module;
@@ -212,6 +213,7 @@ fn two_readings_of_one_text_are_refused() {
 }
 
 #[test]
+#[ignore = "wide"]
 fn steps_that_no_emitted_body_has_are_refused() {
     let given = scara();
     let value = |text: &str, why: &str| given.refused(T1, &T1.replace("5.0 * c2 + 8.766", text), why);
@@ -303,6 +305,7 @@ fn steps_that_no_emitted_body_has_are_refused() {
 
 /// The fast sines have a `sin_cos` of their own, which is right near 0 alone.
 #[test]
+#[ignore = "wide"]
 fn sines_of_several_angles_are_asked_for_as_armgen_asks() {
     let given = Given::new("scara", Trig::Fast);
     let line = "let c2 = cos_one(q[1]);";
@@ -444,6 +447,7 @@ fn digits_lost_in_small_torques_are_seen() {
 
 /// A module that is right and says of itself what is not so.
 #[test]
+#[ignore = "wide"]
 fn what_a_module_says_of_itself_is_judged() {
     let given = scara();
     let bound = |name: &str| {
@@ -505,6 +509,7 @@ fn misjudged(given: &Given, change: impl Fn(&mut Certificate), why: &str) {
 }
 
 #[test]
+#[ignore = "wide"]
 fn certificates_are_compared_with_what_is_found() {
     let given = scara();
     assert!(verify(&given.source, &given.module, Some(&given.certificate)).passed());
@@ -691,6 +696,7 @@ fn what_has_no_value_is_not_said_to_differ() {
 
 /// Over the reals the two are one sign; in floats one of the products is 0 where the angle is small, and the other is not.
 #[test]
+#[ignore = "wide"]
 fn signs_are_those_of_loads() {
     let underflow = "sign(t900 * t900 * 1e24) - sign(t900 * 1e24 * t900)";
     for (name, joint) in [("load_friction", 3), ("dry_friction", 1)] {

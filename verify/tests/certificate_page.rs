@@ -1,6 +1,6 @@
 //! docs/certificate.md keeps its word: each production has a module that leaves it, and each of these modules is refused as the page says.
 
-mod common;
+use crate::common;
 
 use armgen_codegen::kinds::Scalar;
 use armgen_verify::reader::Module;

@@ -1,6 +1,6 @@
 //! What equals the equations over the real numbers and is useless in floats is refused.
 
-mod common;
+use crate::common;
 
 use armgen_codegen::kinds::Scalar;
 use armgen_codegen::schedule::Options;
@@ -29,6 +29,7 @@ fn check(scalar: Scalar, entry: &str, why: &str) {
 }
 
 #[test]
+#[ignore = "wide"]
 fn divisors_that_the_equations_do_not_ask_for_are_refused() {
     let why = "it divides, which its equations do not ask for";
     check(Scalar::F64, "(10.0 * c2 + 21.526) * ((q[2] - 0.2) / (q[2] - 0.2))", why);
@@ -47,6 +48,7 @@ fn divisors_that_the_equations_do_not_ask_for_are_refused() {
 }
 
 #[test]
+#[ignore = "wide"]
 fn what_leaves_the_scalar_or_vanishes_is_refused() {
     let right = "10.0 * c2 + 21.526";
     let why = "a value can leave f64 inside the box";
@@ -82,6 +84,7 @@ fn what_loses_its_digits_is_refused() {
 }
 
 #[test]
+#[ignore = "wide"]
 fn forward_dynamics_are_judged_as_well() {
     let forward = |scalar: Scalar, new: &str, why: &str| {
         let fault = fault(scalar, "pub fn forward_dynamics(", "[t29,", &format!("[{new},"));
@@ -99,6 +102,7 @@ fn forward_dynamics_are_judged_as_well() {
 
 /// A literal has the exact value that stands at its place, and not another one that rounds to the same float.
 #[test]
+#[ignore = "wide"]
 fn every_literal_has_one_exact_value() {
     for path in common::paths().into_iter().chain(common::hostile_paths()) {
         let name = path.file_stem().expect("a name").to_string_lossy().into_owned();
@@ -122,6 +126,7 @@ fn every_literal_has_one_exact_value() {
 
 /// Descriptions that are made to be hard on armgen: right, or refused with a diagnostic, or with what the limits make of it.
 #[test]
+#[ignore = "wide"]
 fn hostile_robots_are_right_or_refused_with_a_reason() {
     let mut verified = 0;
     for path in common::hostile_paths() {
@@ -146,6 +151,7 @@ fn hostile_robots_are_right_or_refused_with_a_reason() {
 
 /// Bounds grow along an arm, and so does what is allowed of them.
 #[test]
+#[ignore = "wide"]
 fn a_long_arm_is_verified() {
     let joint = |i: usize| {
         format!(

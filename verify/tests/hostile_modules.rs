@@ -219,6 +219,7 @@ fn what_is_said_of_the_last_link_is_so() {
 
 /// A module that was made without a pass is right without its certificate, too: its constants are those of the generator without that pass.
 #[test]
+#[ignore = "wide"]
 fn modules_made_without_a_pass_are_right() {
     let source = Source::new("robot.yaml", include_str!("../../tests/robots/dry_friction.yaml"));
     let mut others = 0;
@@ -234,6 +235,7 @@ fn modules_made_without_a_pass_are_right() {
 
 /// Lengths of a centimetre, and of what calibration leaves of parallel axes: operands of quotients are larger than torques there.
 #[test]
+#[ignore = "wide"]
 fn short_links_are_no_loss() {
     for (length, twist) in [("0.01", "0"), ("0.5", "0.001"), ("1e-5", "0.3")] {
         let joint = |name: &str| {

@@ -2,9 +2,9 @@
 //!
 //! Compilers and interpreters that this machine lacks are named in a line, with the package of Debian that brings them, and what needs
 //! them is skipped. All robots, at 10000 states and with all compilers, by
-//! `cargo test --release -p armgen-verify --test languages -- --ignored --nocapture`.
+//! `cargo test --release -p armgen-verify --test all -- --ignored --nocapture all_robots_have_the_bits_of_rust`.
 
-mod common;
+use crate::common;
 #[path = "../../tests/src/installed.rs"]
 mod installed;
 #[path = "languages/mutation.rs"]
@@ -70,6 +70,7 @@ fn check_same_in(languages: impl Iterator<Item = Language>, name: &str, generate
 }
 
 #[test]
+#[ignore = "wide"]
 fn other_languages_do_the_operations_of_rust_in_its_order() {
     for name in ["scara", "scara4", "modified_prismatic", "single_joint", "dry_friction", "load_friction"] {
         check_read(name, Scalar::F64);
@@ -83,6 +84,7 @@ fn fused(name: &str, scalar: Scalar) -> Generated {
 
 /// C has the fused operations of Rust, and what has none is written without.
 #[test]
+#[ignore = "wide"]
 fn fused_operations_are_those_of_rust() {
     for scalar in [Scalar::F64, Scalar::F32] {
         let fused = fused("scara4", scalar);
@@ -122,6 +124,7 @@ fn some(functions: &[&str]) -> Options {
 
 /// A function of thousands of lines is printed in parts, in every language.
 #[test]
+#[ignore = "wide"]
 fn parts_of_long_functions_are_put_together() {
     let generated = common::generate_with(&chain(24), &some(&["inverse_dynamics_derivatives"]));
     check_same("chain", &generated, Scalar::F64);
@@ -150,6 +153,7 @@ fn a_module_in_another_language_is_certified() {
 }
 
 #[test]
+#[ignore = "wide"]
 fn changes_are_found_in_every_language() {
     for language in others() {
         mutation::check("scara", language, false, 200);
@@ -200,6 +204,7 @@ fn every_comment_is_that_of_armgen() {
 }
 
 #[test]
+#[ignore = "wide"]
 fn all_languages_have_the_bits_of_rust() {
     for name in ["scara", "modified_prismatic", "dry_friction", "load_friction"] {
         run::check(name, Scalar::F64, 500, run::Effort::Short);
@@ -210,6 +215,7 @@ fn all_languages_have_the_bits_of_rust() {
 }
 
 #[test]
+#[ignore = "wide"]
 fn fused_operations_have_the_bits_of_rust() {
     for (name, scalar) in [("scara4", Scalar::F64), ("load_friction", Scalar::F64), ("scara4", Scalar::F32)] {
         let options = Options { scalar, trig: Trig::Fast, fuse: true, ..Options::default() };
@@ -218,31 +224,37 @@ fn fused_operations_have_the_bits_of_rust() {
 }
 
 #[test]
+#[ignore = "wide"]
 fn callers_of_the_page_print_what_it_says() {
     page::check_page();
 }
 
 #[test]
+#[ignore = "wide"]
 fn a_package_is_called_as_its_help_says() {
     page::check_package();
 }
 
 #[test]
+#[ignore = "wide"]
 fn arrays_need_the_array_api_and_no_more() {
     page::check_array_api();
 }
 
 #[test]
+#[ignore = "wide"]
 fn entries_of_another_type_are_told_what_is_taken() {
     page::check_other_types();
 }
 
 #[test]
+#[ignore = "wide"]
 fn torch_has_the_bits_of_numpy_and_its_derivatives() {
     page::check_torch();
 }
 
 #[test]
+#[ignore = "wide"]
 fn the_test_file_of_each_language_passes_and_finds_a_planted_error() {
     for language in others() {
         page::check_tests("scara", Scalar::F64, language);
@@ -253,17 +265,19 @@ fn the_test_file_of_each_language_passes_and_finds_a_planted_error() {
 }
 
 #[test]
+#[ignore = "wide"]
 fn declarations_are_those_that_tsc_takes() {
     page::check_declarations();
 }
 
 #[test]
+#[ignore = "wide"]
 fn fast_math_is_refused() {
     page::check_fast_math();
 }
 
 #[test]
-#[ignore = "many minutes: all robots, 10000 states each, with all compilers and their flags"]
+#[ignore = "full: many minutes: all robots, 10000 states each, with all compilers and their flags"]
 fn all_robots_have_the_bits_of_rust() {
     for path in common::paths() {
         let name = path.file_stem().expect("a name").to_string_lossy().into_owned();
@@ -274,7 +288,7 @@ fn all_robots_have_the_bits_of_rust() {
 }
 
 #[test]
-#[ignore = "minutes: functions of thousands of lines in all languages"]
+#[ignore = "full: minutes: functions of thousands of lines in all languages"]
 fn one_joint_and_thirty_two_have_the_bits_of_rust() {
     #[allow(clippy::needless_update)]
     let all = Options { trig: Trig::Fast, ..Options::default() };

@@ -5,7 +5,7 @@
 //! dozen changes on small robots; all of them, 200 on every robot in both scalars, by `cargo test --release -p armgen-verify --test
 //! mutations -- --ignored --nocapture`.
 
-mod common;
+use crate::common;
 #[path = "common/mutation.rs"]
 mod mutation;
 
@@ -169,6 +169,7 @@ fn check(name: &str, options: &Options, wanted: usize) -> usize {
 }
 
 #[test]
+#[ignore = "wide"]
 fn some_changes_are_found() {
     for name in ["scara4", "scara", "modified_prismatic", "load_friction"] {
         assert_eq!(check(name, &Options::default(), 120), 5, "{name}: every kind of change occurs");
@@ -179,6 +180,7 @@ fn some_changes_are_found() {
 
 /// What is no size of the gravity torque of its joint is none of the equations.
 #[test]
+#[ignore = "wide"]
 fn the_size_of_another_value_is_found() {
     let source = common::source("load_friction");
     let generated = common::generate(&source, Scalar::F64);
@@ -200,7 +202,7 @@ fn the_size_of_another_value_is_found() {
 }
 
 #[test]
-#[ignore = "some minutes: all robots, 200 changes each, in both scalars"]
+#[ignore = "wide"]
 fn all_changes_are_found() {
     for path in common::paths() {
         let name = path.file_stem().expect("a name").to_string_lossy().into_owned();

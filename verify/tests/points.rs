@@ -1,6 +1,6 @@
 //! The random points: what they follow from, and that roots have their real signs there.
 
-mod common;
+use crate::common;
 
 use armgen_codegen::kinds::Scalar;
 use armgen_codegen::source::Source;

@@ -1,6 +1,6 @@
 //! Every robot of the project is verified, in both scalars; a certificate lets anyone verify again.
 
-mod common;
+use crate::common;
 
 use armgen_codegen::kinds::Scalar;
 use armgen_codegen::program::Trig;
@@ -33,22 +33,26 @@ fn all_robots_are_verified_in_f64() {
 }
 
 #[test]
+#[ignore = "wide"]
 fn all_robots_are_verified_in_f32() {
     check(&Options { scalar: Scalar::F32, ..Options::default() });
 }
 
 #[test]
+#[ignore = "wide"]
 fn all_robots_are_verified_with_fast_sines() {
     check(&Options { trig: Trig::Fast, ..Options::default() });
 }
 
 #[test]
+#[ignore = "wide"]
 fn all_robots_are_verified_with_fused_operations() {
     check(&Options { fuse: true, ..Options::default() });
 }
 
 /// No robot is left out: its inverse kinematics is certified, or the module says why there is none.
 #[test]
+#[ignore = "wide"]
 fn the_inverse_kinematics_of_every_robot_is_certified_or_says_why_not() {
     let mut without = Vec::new();
     for path in common::paths() {
@@ -78,6 +82,7 @@ fn small_torques_beside_large_limits_and_rates_that_cancel_are_no_faults() {
 }
 
 #[test]
+#[ignore = "wide"]
 fn a_certificate_replaces_the_generator_and_belongs_to_its_texts() {
     // An inertia turned by a general angle is a long formula.
     let attached = ("attached", Source::new("attached.yaml", include_str!("arms/attached.yaml")));

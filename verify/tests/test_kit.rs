@@ -1,6 +1,6 @@
 //! The test file for users, run as a user runs it: in a project of its own.
 
-mod common;
+use crate::common;
 
 use std::path::{Path, PathBuf};
 use std::process::Command;
@@ -48,6 +48,7 @@ fn check(name: &str, scalar: Scalar) {
 }
 
 #[test]
+#[ignore = "wide"]
 fn the_test_file_passes_in_a_project_of_its_own() {
     for name in ["scara", "panda7", "everything", "base_set"] {
         check(name, Scalar::F64);
@@ -57,6 +58,7 @@ fn the_test_file_passes_in_a_project_of_its_own() {
 }
 
 #[test]
+#[ignore = "wide"]
 fn the_test_file_finds_a_planted_error() {
     let source = common::source("scara4");
     let module = common::generate(&source, Scalar::F64).module;

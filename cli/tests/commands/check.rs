@@ -2,7 +2,7 @@
 
 use std::fs;
 
-use crate::{check, err, file, folder, out};
+use super::{check, err, file, folder, out};
 
 #[test]
 fn a_valid_file_gives_a_summary_and_code_0() {

@@ -6,7 +6,7 @@ use std::process::Command;
 
 use serde_json::Value;
 
-use crate::{check, err, file, folder, out};
+use super::{check, err, file, folder, out};
 
 #[test]
 fn what_stands_beside_a_module_needs_one() {
@@ -18,6 +18,7 @@ fn what_stands_beside_a_module_needs_one() {
 }
 
 #[test]
+#[ignore = "wide"]
 fn the_test_file_runs_beside_its_module() {
     let folder = folder("test_file");
     fs::create_dir_all(folder.join("src")).expect("a folder");

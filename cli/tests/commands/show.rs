@@ -2,7 +2,7 @@
 
 use serde_json::Value;
 
-use crate::{check, err, file, json, out};
+use super::{check, err, file, json, out};
 
 #[test]
 fn show_as_json_keeps_its_schema() {

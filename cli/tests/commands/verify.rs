@@ -4,7 +4,7 @@ use std::fs;
 
 use serde_json::Value;
 
-use crate::{check, err, file, folder, out};
+use super::{check, err, file, folder, out};
 
 #[test]
 fn a_certificate_is_written_and_verified_again() {

@@ -3,7 +3,7 @@
 use std::fs;
 use std::path::{Path, PathBuf};
 
-use crate::{check, err, file, folder, out};
+use super::{check, err, file, folder, out};
 
 #[test]
 fn generate_writes_the_same_bytes_everywhere() {

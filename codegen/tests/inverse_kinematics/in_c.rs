@@ -5,7 +5,7 @@ use std::process::Command;
 
 use armgen_codegen::Scalar;
 
-use crate::arms::{few, generated, made_up, robots, workspace};
+use super::arms::{few, generated, made_up, robots, workspace};
 
 const WARNINGS: [&str; 6] = ["-Wall", "-Wextra", "-pedantic", "-Wconversion", "-Wshadow", "-Werror"];
 
@@ -19,7 +19,7 @@ fn succeed(command: &mut Command) -> String {
 }
 
 fn there(compiler: &str) -> bool {
-    crate::installed::there(compiler, "gcc, g++, clang")
+    super::installed::there(compiler, "gcc, g++, clang")
 }
 
 fn folder(name: &str) -> PathBuf {
@@ -179,6 +179,7 @@ fn no_guard_is_that_of_another_robot() {
 
 /// Two classes, a joint that is given, a position that is polished and an arm with few joints, by one compiler. Some 20 s of a processor.
 #[test]
+#[ignore = "wide"]
 fn modules_in_c_have_the_bits_of_rust() {
     let folder = folder("inverse_kinematics_in_c");
     let chosen = ["puma560", "panda7", "position3r", "general_angles", FEW];
@@ -187,9 +188,9 @@ fn modules_in_c_have_the_bits_of_rust() {
 
 /// Every class, every compiler, flags that fuse multiplications where they may; C++, and compilers that are asked for fast-math.
 ///
-/// `cargo test --release -p armgen-codegen --test inverse_kinematics -- --ignored --nocapture`.
+/// `cargo test --release -p armgen-codegen --test all -- --ignored --nocapture every_class_in_c_has_the_bits_of_rust`.
 #[test]
-#[ignore = "takes minutes"]
+#[ignore = "full: takes minutes"]
 fn every_class_in_c_has_the_bits_of_rust() {
     let folder = folder("every_inverse_kinematics_in_c");
     let arms = arms(|_| true);
@@ -215,6 +216,7 @@ fn every_class_in_c_has_the_bits_of_rust() {
 
 /// The caller that stands in the documentation prints what stands below it, and the test that is written beside a module passes.
 #[test]
+#[ignore = "wide"]
 fn the_caller_of_the_documentation_runs() {
     let page = include_str!("../../../docs/inverse-kinematics.md");
     let section = page.split("\n## In C\n").nth(1).expect("a section");

@@ -5,7 +5,7 @@ use std::process::Command;
 
 use armgen_codegen::{Generated, Scalar};
 
-use crate::arms::{generated, workspace};
+use super::arms::{generated, workspace};
 
 /// The project in a folder of its own.
 pub(crate) struct Project {

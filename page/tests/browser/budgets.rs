@@ -1,11 +1,11 @@
 //! What a page costs: sizes, and the times of a browser.
 
-use crate::driver::Tab;
-use crate::pages::{long, robot, written};
+use super::driver::Tab;
+use super::pages::{long, robot, written};
 
-/// The table of docs/page.md: `cargo test -p armgen-page --test browser -- --ignored --nocapture table_of_budgets`.
+/// The table of docs/page.md: `cargo test -p armgen-page --test all -- --ignored --nocapture table_of_budgets`.
 #[test]
-#[ignore = "measures times: alone, on a machine that does nothing else"]
+#[ignore = "full: measures times: alone, on a machine that does nothing else"]
 fn table_of_budgets() {
     println!("| robot | page, kB | drawn after, ms | slider, ms | slowest section of equations, ms | longest standstill, ms |\n|---|---|---|---|---|---|");
     let named = ["scara", "puma560", "ur5", "panda7", "everything"].map(robot);

@@ -2,11 +2,12 @@
 
 use armgen_codegen::source::Source;
 
-use crate::pages::{opened, robot};
-use crate::MOVE;
+use super::pages::{opened, robot};
+use super::MOVE;
 
 /// Poses of the true arm on the page of a description with one wrong value: the first suspect is the row, and a ghost can be drawn of it.
 #[test]
+#[ignore = "wide"]
 fn a_planted_mistake_is_the_first_suspect() {
     let truth = robot("ur5");
     let Some(mut tab) = opened(&truth, 1600, "light") else { return };
@@ -84,6 +85,7 @@ fn a_planted_mistake_is_the_first_suspect() {
 
 /// The other postures of a pose are listed, drawn as ghosts, and taken by their buttons; the joint of a redundant arm is held.
 #[test]
+#[ignore = "wide"]
 fn other_postures_at_a_pose_are_ghosts() {
     // The number of postures, how many ghosts beside the arm, how far the end effector moves when the second posture is taken, and the joint
     // that is held then.

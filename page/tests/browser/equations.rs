@@ -1,9 +1,10 @@
 //! Equations: set when their section is opened, with numbers beside them, and all of them on paper.
 
-use crate::pages::{opened, robot};
+use super::pages::{opened, robot};
 
 /// Every section of equations opens, with numbers and with names, and never holds more nodes than a browser lays out at once.
 #[test]
+#[ignore = "wide"]
 fn equations_are_set_when_they_are_opened() {
     for name in ["scara", "ur5", "everything"] {
         let source = robot(name);
@@ -44,6 +45,7 @@ fn equations_are_set_when_they_are_opened() {
 
 /// Printed, an open section has all of its lines, those that wait for a button as well; afterwards they are as they were.
 #[test]
+#[ignore = "wide"]
 fn all_lines_of_an_open_section_are_printed() {
     let Some(mut tab) = opened(&robot("panda7"), 1600, "light") else { return };
     let before = tab.run(
@@ -65,6 +67,7 @@ fn all_lines_of_an_open_section_are_printed() {
 /// An entry of an open section has its number beside it, that of the table at every posture; a singular posture is told at the picture, and
 /// the buttons beside the factors lead to it.
 #[test]
+#[ignore = "wide"]
 fn entries_have_numbers_and_singular_postures_a_badge() {
     let Some(mut tab) = opened(&robot("scara"), 1600, "light") else { return };
     let seen = tab.run(

@@ -1,6 +1,6 @@
-//! The figures of docs/page.md: `cargo test -p armgen-page --test browser -- --ignored figures_of_the_documentation`.
+//! The figures of docs/page.md: `cargo test -p armgen-page --test all -- --ignored figures_of_the_documentation`.
 
-use crate::pages::{opened, robot};
+use super::pages::{opened, robot};
 
 /// Row 2 of the SCARA in focus.
 const SCARA: &str = r##"(() => {
@@ -32,7 +32,7 @@ const PANDA: &str = r##"(async () => {
 })()"##;
 
 #[test]
-#[ignore = "writes the figures of the documentation"]
+#[ignore = "full: writes the figures of the documentation"]
 fn figures_of_the_documentation() {
     for (name, prepare) in [("scara", SCARA), ("panda7", PANDA)] {
         for theme in ["light", "dark"] {

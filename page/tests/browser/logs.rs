@@ -2,11 +2,12 @@
 
 use armgen_page::{Log, Run};
 
-use crate::driver::{self, Tab};
-use crate::pages::{robot, written_with};
+use super::driver::{self, Tab};
+use super::pages::{robot, written_with};
 
 /// A log is played: the arm follows the time line, the tip leaves its trail, plots and figures are there.
 #[test]
+#[ignore = "wide"]
 fn a_log_is_played_on_the_arm() {
     if driver::program().is_none() {
         return;

@@ -7,7 +7,7 @@ use std::sync::{Arc, Mutex, OnceLock, PoisonError};
 use armgen_codegen::source::Source;
 use armgen_page::Run;
 
-use crate::driver::{self, Tab};
+use super::driver::{self, Tab};
 
 /// All descriptions of the project, sorted.
 pub(crate) fn robots() -> Vec<Source> {

@@ -3,11 +3,12 @@
 use armgen_codegen::source::Source;
 use serde_json::Value;
 
-use crate::pages::{opened, robot};
-use crate::MOVE;
+use super::pages::{opened, robot};
+use super::MOVE;
 
 /// A row in focus is drawn as on a sheet; limits that are left are marked; keys turn the arm.
 #[test]
+#[ignore = "wide"]
 fn rows_are_drawn_and_limits_marked() {
     let text = robot("scara").text().replacen("    type: revolute\n", "    type: revolute\n    limits: {position: [-1, 1]}\n", 1);
     let source = Source::new("limited.yaml", text);
@@ -36,6 +37,7 @@ fn rows_are_drawn_and_limits_marked() {
 /// Entries say their units where some joints turn and some slide; bodies their tensors and what the linter says of them; a tick in the list of
 /// layers moves no slider, the tables of frames fit, and the wheel scrolls a narrow window.
 #[test]
+#[ignore = "wide"]
 fn tables_say_units_and_doubts() {
     let Some(mut tab) = opened(&robot("scara"), 1600, "light") else { return };
     let seen = tab.run(

@@ -2,12 +2,13 @@
 
 use armgen_page::{Log, Run, Verdict};
 
-use crate::driver::{self, Tab};
-use crate::pages::{opened, robot, written, written_with};
-use crate::MOVE;
+use super::driver::{self, Tab};
+use super::pages::{opened, robot, written, written_with};
+use super::MOVE;
 
 /// The widest and the narrowest window, both themes, print: nothing is said, nothing overflows.
 #[test]
+#[ignore = "wide"]
 fn pages_fit_windows_themes_and_paper() {
     for source in [robot("scara"), robot("panda7"), robot("everything")] {
         for (width, theme) in [(360, "dark"), (1600, "light"), (1360, "dark"), (810, "dark"), (800, "light")] {
@@ -69,6 +70,7 @@ const UNFOLD: &str = r#"(async () => {
 /// In both themes and in a narrow window every control, picture and table has a name, headings of tables say what they head, references lead
 /// somewhere, and every text has a contrast of 4.5 to 1; the key of tabulators reaches all controls in their order, and the focus is seen.
 #[test]
+#[ignore = "wide"]
 fn everybody_can_read_and_use_a_page() {
     if driver::program().is_none() {
         return;
@@ -128,6 +130,7 @@ fn keep(name: &str, tab: &mut Tab) {
 /// In a narrow window the picture stays in sight while what acts on it is looked at farther down: a run that is followed, a row in focus, a
 /// suspect that is shown. It covers neither what was pressed nor the time line, and leaves when what acts on it does.
 #[test]
+#[ignore = "wide"]
 fn the_picture_stays_in_sight_of_what_acts_on_it() {
     if driver::program().is_none() {
         return;
@@ -204,6 +207,7 @@ const FOLLOWED: &str = r##"(async () => {
 
 /// The badge of a singular posture takes one line in a narrow window, and no part of the arm lies under it.
 #[test]
+#[ignore = "wide"]
 fn the_badge_of_a_narrow_window_leaves_the_arm_free() {
     for name in ["scara", "panda7", "ur5"] {
         let Some(mut tab) = opened(&robot(name), 360, "dark") else { return };
@@ -217,6 +221,7 @@ fn the_badge_of_a_narrow_window_leaves_the_arm_free() {
 
 /// A picture that is out of sight, or smaller than any arm, is not drawn: lengths over its size would be infinite.
 #[test]
+#[ignore = "wide"]
 fn a_picture_without_a_size_says_nothing() {
     if driver::program().is_none() {
         return;

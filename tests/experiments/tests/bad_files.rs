@@ -3,7 +3,7 @@
 //! A file in `tests/bad/experiments` is named for the code that it must get, perhaps with a word more: `missing-key-law.yaml`. The faulty
 //! paths that they name stand in `paths` beside them.
 
-mod common;
+use crate::common;
 
 use std::collections::BTreeSet;
 use std::path::PathBuf;

@@ -1,6 +1,6 @@
 //! Every experiment of the repository gives what is expected, on the robot that it is written for.
 
-mod common;
+use crate::common;
 
 use std::path::Path;
 

@@ -1,6 +1,6 @@
 //! Verdicts on a UR10, beside what the simulated arm does.
 
-mod common;
+use crate::common;
 
 use std::time::Duration;
 

@@ -1,6 +1,6 @@
 //! Runs that begin on their path, and how hard they ask the joints to work.
 
-mod common;
+use crate::common;
 
 use armgen_experiments::campaign::Job;
 use armgen_experiments::model::{JointQuantity, Quantity};

@@ -6,7 +6,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use armgen_codegen::kinds::Scalar;
 use armgen_verify::bounds::{of, two_digits};
 
-use crate::{common, robot};
+use super::{common, robot};
 
 const PAGE: &str = include_str!("../../../docs/error-bounds.md");
 
@@ -35,6 +35,7 @@ fn every_robot_has_a_section() {
 }
 
 #[test]
+#[ignore = "wide"]
 fn each_function_has_the_bounds_of_now() {
     let mut stale = Vec::new();
     let mut of_torques = BTreeMap::new();

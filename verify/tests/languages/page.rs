@@ -10,8 +10,8 @@ use armgen_codegen::schedule::Options;
 use armgen_codegen::Generated;
 use armgen_verify::reader::ModuleText;
 
+use super::tools::{numpy, python_with, succeed, there, write, write_package};
 use crate::common;
-use crate::tools::{numpy, python_with, succeed, there, write, write_package};
 
 /// The block of a kind of the page of languages, the first behind a heading.
 fn block(heading: &str, kind: &str) -> String {
@@ -26,7 +26,7 @@ fn folder_of(name: &str) -> (PathBuf, Generated) {
     let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join(name);
     let _ = std::fs::remove_dir_all(&folder);
     std::fs::create_dir_all(&folder).expect("a folder");
-    (folder, crate::generated(&common::source("scara"), Scalar::F64, Trig::Fast))
+    (folder, super::generated(&common::source("scara"), Scalar::F64, Trig::Fast))
 }
 
 #[track_caller]
@@ -234,7 +234,7 @@ pub(crate) fn check_array_api() {
     let Some(python) = numpy() else { return };
     let (folder, generated) = folder_of("languages_array_api");
     write(folder.join("scara.py"), generated.in_language(Language::Python));
-    let other = crate::generated(&common::source("dry_friction"), Scalar::F32, Trig::Std);
+    let other = super::generated(&common::source("dry_friction"), Scalar::F32, Trig::Std);
     write(folder.join("friction.py"), other.in_language(Language::Python));
     write(
         folder.join("main.py"),
@@ -305,7 +305,7 @@ pub(crate) fn check_other_types() {
     write(folder.join("scara.py"), generated.in_language(Language::Python));
     write(
         folder.join("narrow.py"),
-        crate::generated(&common::source("scara"), Scalar::F32, Trig::Fast).in_language(Language::Python),
+        super::generated(&common::source("scara"), Scalar::F32, Trig::Fast).in_language(Language::Python),
     );
     let said = "def said(call):
     try:
@@ -356,7 +356,7 @@ pub(crate) fn check_tests(name: &str, scalar: Scalar, language: Language) {
     }
     let (folder, _) = folder_of(&format!("languages_tests_{name}_{scalar:?}_{language:?}"));
     let source = common::source(name);
-    let generated = crate::generated(&source, scalar, Trig::Fast);
+    let generated = super::generated(&source, scalar, Trig::Fast);
     let text = generated.in_language(language);
     let called = match language {
         Language::C => "robot.h",

@@ -10,8 +10,8 @@ use armgen_codegen::Generated;
 use armgen_verify::contract::Array;
 use armgen_verify::program::Argument;
 
-use crate::run::{Effort, Robot};
-use crate::tools::{numpy, succeed, there, write, write_package};
+use super::run::{Effort, Robot};
+use super::tools::{numpy, succeed, there, write, write_package};
 
 const DRIVER: &str = include_str!("driver.rs");
 /// Of the crate the module calls one function, for angles that the states do not have.

@@ -13,9 +13,9 @@ use armgen_verify::program::Argument;
 use armgen_verify::reader::{Constant, Module};
 use armgen_verify::stream::Stream;
 
+use super::programs::{batch, c, javascript, octave, python, rust};
+use super::tools::write;
 use crate::common;
-use crate::programs::{batch, c, javascript, octave, python, rust};
-use crate::tools::write;
 
 /// How many compilers and flags are tried.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -150,7 +150,7 @@ pub(crate) fn check_with(name: &str, source: &Source, options: &Options, states:
     write(folder.join("states"), robot.states(states));
     rust(&folder, &robot, &generated);
     let has = |language: &Language| language.scalars().contains(&scalar) && (!options.fuse || *language == Language::C);
-    for language in crate::others().filter(has) {
+    for language in super::others().filter(has) {
         let runs = match language {
             Language::Rust => continue,
             Language::C => {

@@ -5,8 +5,8 @@ use std::process::Command;
 
 use armgen_codegen::Generated;
 
-pub(crate) use crate::installed::there;
-use crate::installed::{left_out, runs};
+pub(crate) use super::installed::there;
+use super::installed::{left_out, runs};
 
 /// Runs a command; what went wrong if it failed or warned.
 #[track_caller]

@@ -1,0 +1,4 @@
+//! The program, run as a user runs it. One program for all tests of the crate: a file beside this one is a module here.
+
+mod commands;
+mod languages;

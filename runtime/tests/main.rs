@@ -1,0 +1,16 @@
+//! The runtime, on arms written by hand. One program for all tests of the crate: a file beside this one is a module here.
+
+mod allocation;
+mod bits;
+mod clik;
+mod common;
+mod examples;
+mod joint_control;
+mod manipulability;
+mod model;
+mod operational_space;
+mod plant;
+mod random_starts;
+mod refusals;
+mod stability;
+mod trajectory;
