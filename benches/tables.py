@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Writes the tables of README.md from what the benches left in target/, and prints them.
+"""Writes results/functions.csv and the table of README.md from the output of the benches in target/.
 
   cargo bench --bench instructions -- --save-summary=json
   cargo bench --bench time
@@ -13,12 +13,13 @@ import subprocess
 
 HERE = pathlib.Path(__file__).resolve().parent
 ROBOTS = ["scara4", "puma560", "ur5", "panda7"]
+SHOWN = "panda7"
 START, END = "<!-- tables.py writes from here -->", "<!-- to here -->"
 
 
 def operations(robot):
     """Function -> its entry of `armgen count`."""
-    command = ["cargo", "run", "--release", "--quiet", "--", "count", f"robots/{robot}.yaml", "--format", "json"]
+    command = ["cargo", "run", "--release", "--quiet", "-p", "armgen", "--", "count", f"robots/{robot}.yaml", "--format", "json"]
     text = subprocess.run(command, cwd=HERE.parent, check=True, stdout=subprocess.PIPE, text=True).stdout
     return json.loads(text)["functions"]
 
@@ -54,7 +55,8 @@ def table(rows):
 
 
 def main():
-    counted, timed, parts = instructions(), times(), []
+    counted, timed = instructions(), times()
+    lines = [["robot", "function", "multiplications", "additions", "pairs", "instructions libm", "instructions fast", "ns libm", "ns fast"]]
     number = lambda values, key, form: form.format(values[key]) if key in values else "-"
     for robot in ROBOTS:
         count = operations(robot)
@@ -66,9 +68,10 @@ def main():
                          *(number(counted, (robot, t, function), "{}") for t in ("libm", "fast")),
                          *(number(timed, (robot, t, function), "{:.1f}") for t in ("libm", "fast"))])
         rows[1:] = sorted(rows[1:], key=lambda row: [*count, "inverse_kinematics"].index(row[0].strip("`")))
-        parts.append(f"### {robot}\n\n{table(rows)}")
-    text = "\n\n".join(parts)
-    print(text)
+        lines += [[robot, row[0].strip("`"), *("" if cell == "-" else cell for cell in row[1:])] for row in rows[1:]]
+        if robot == SHOWN:
+            text = f"### {robot}\n\n{table(rows)}"
+    (HERE / "results" / "functions.csv").write_text("".join(",".join(line) + "\n" for line in lines))
     readme = HERE / "README.md"
     before, after = readme.read_text().split(START)[0], readme.read_text().split(END)[1]
     readme.write_text(f"{before}{START}\n\n{text}\n\n{END}{after}")

@@ -3,7 +3,7 @@
 
     ./fused.py                                   everything; minutes
     ./fused.py --armgen PROGRAM --rounds 101     with a built armgen, steadier figures
-    ./fused.py --out ../../docs/fused.md         the table as Markdown, too, between the marks of that file
+    ./fused.py --out ../../docs/performance.md         the table as Markdown, too, between the marks of that file
 
 A figure is how many times as fast the fused function is: the median over the rounds of bench.cpp of the ratio within each round.
 """

@@ -6,7 +6,7 @@
     ./run.py --robots ur5,panda7 --rounds 101   fewer arms, steadier figures
     ./run.py --functions regressor,gravity      these alone
     ./run.py --cpu native                       compiled for this machine alone, not also for any of its kind
-    ./run.py --out table.md                     the tables as Markdown, too
+    ./run.py --out table.md --csv table.csv     the tables, too: those of the Panda, or of the only arm, as Markdown, all as CSV
 """
 import argparse
 import hashlib
@@ -35,6 +35,8 @@ TOLERANCE = 1e-9
 SHORTEST_NS = 10
 PROCESSES = 5
 OURS = "armgen"
+# The arm whose tables the page shows.
+SHOWN = "panda7"
 
 # What Pinocchio's own cmake files define for whoever uses the library. No -march: with wider vectors Eigen's classes would be laid out
 # otherwise than in the library, which is compiled for any x86-64.
@@ -98,7 +100,8 @@ def options():
     parser.add_argument("--functions", type=names, default=FUNCTIONS, help="names of functions, separated by commas")
     parser.add_argument("--cpu", type=names, default=list(CPUS), help="what is compiled for: native, baseline (any processor of the kind), or both")
     parser.add_argument("--rounds", type=positive, default=41)
-    parser.add_argument("--out", type=pathlib.Path, help="Markdown file for the tables")
+    parser.add_argument("--out", type=pathlib.Path, help="Markdown file for the tables of the Panda, or of all arms without it")
+    parser.add_argument("--csv", type=pathlib.Path, help="CSV file for all tables")
     chosen = parser.parse_args()
     for option, known in (("cpu", CPUS), ("functions", FUNCTIONS)):
         unknown = [name for name in getattr(chosen, option) if name not in known]
@@ -344,10 +347,21 @@ def markdown(cases, rounds):
     for cpu in dict.fromkeys(case["cpu"] for case in cases):
         own = [case for case in cases if case["cpu"] == cpu]
         text += [f"### Compiled for {'this machine' if cpu == 'native' else 'any x86-64'}", "", summary(own), ""]
-        for robot in dict.fromkeys(case["robot"] for case in own):
+        robots = list(dict.fromkeys(case["robot"] for case in own))
+        for robot in [SHOWN] if SHOWN in robots else robots:
             text += [f"#### {robot}", "", aligned(table([case for case in own if case["robot"] == robot]), markdown=True), ""]
     text += [f"\\* does not count: the fastest peer needs less than {SHORTEST_NS} ns.", ""] if not all(c["counts"] for c in cases) else []
     return "\n".join(text)
+
+
+def comma_separated(cases):
+    """All cases as CSV, by processor and arm."""
+    names = list(dict.fromkeys(name for case in cases for name in case["peers"]))
+    lines = [["cpu", "robot", "function", *(f"{name} ns" for name in names), f"{OURS} / fastest", "largest error"]]
+    for case in cases:
+        times = [f"{case['ns'][name]:.1f}" if name in case["ns"] else "" for name in names]
+        lines.append([case["cpu"], case["robot"], case["function"], *times, f"{case['ratio']:.2f}", f"{case['error']:.0e}"])
+    return "".join(",".join(line) + "\n" for line in lines)
 
 
 def into(path, text):
@@ -382,6 +396,8 @@ def main():
     wrong = [case for case in cases if not case["error"] <= TOLERANCE]
     if chosen.out:
         into(chosen.out, markdown(cases, chosen.rounds))
+    if chosen.csv:
+        chosen.csv.write_text(comma_separated(cases))
     for case in wrong:
         errors = ", ".join(f"{name} {peer['error']:.1e}" for name, peer in case["peers"].items() if "error" in peer)
         print(f"WRONG VALUES: {case['robot']} {case['function']}: {errors}, at most {TOLERANCE:.0e} allowed")

@@ -1,4 +1,4 @@
-//! The names of all that makes the emitted functions cheaper, so that each can be switched off: `docs/passes` tells of every one.
+//! The names of all that makes the emitted functions cheaper, so that each can be switched off; `docs/passes.md` explains every one.
 
 use armgen_algebra::optimise::Rewrite;
 

@@ -1,5 +1,5 @@
 //! The three ways to a robot in a project of one's own, each tried as a stranger's project: a copied file, the crate `armgen-generated`,
-//! and a build script; and when a build script runs. The README's own snippets are tried as they are printed.
+//! and a build script; and when a build script runs. The snippets of docs/rust.md are tried as they are printed.
 
 use std::path::Path;
 
@@ -256,10 +256,10 @@ fn the_robot_follows_its_file_and_nothing_else() {
     assert!(text(&path).contains("pub const DOF: usize = 7;"));
 }
 
-/// The snippets of a section of the README, which begins with a word in bold: names of files and their texts.
+/// The snippets of a section of docs/rust.md, which begins with a word in bold: names of files and their texts.
 fn snippets(section: &str) -> Vec<(String, String)> {
-    let readme = std::fs::read_to_string(workspace().join("README.md")).expect("README.md");
-    let rest = readme.split(&format!("**{section}")).nth(1).unwrap_or_else(|| panic!("README.md has no **{section}"));
+    let page = std::fs::read_to_string(workspace().join("docs/rust.md")).expect("docs/rust.md");
+    let rest = page.split(&format!("**{section}")).nth(1).unwrap_or_else(|| panic!("docs/rust.md has no **{section}"));
     let rest = rest.split("\n**").next().and_then(|text| text.split("\n## ").next()).expect("text");
     let blocks = rest.split("```").skip(1).step_by(2);
     let files: Vec<_> = blocks
@@ -273,8 +273,8 @@ fn snippets(section: &str) -> Vec<(String, String)> {
     files
 }
 
-/// What the program of a section of the README prints, with files added.
-fn follow_the_readme(section: &str, name: &str, more: &[(&str, &str)]) -> Vec<f64> {
+/// The output of the program in a section of docs/rust.md, with files added.
+fn follow_the_page(section: &str, name: &str, more: &[(&str, &str)]) -> Vec<f64> {
     let project = stranger(name);
     for (file, text) in snippets(section) {
         let text = if file == "Cargo.toml" { manifest(name, "2021", &text) } else { text };
@@ -293,14 +293,14 @@ fn the_snippets_of_the_readme_do_what_they_say() {
         model.gravity(&vec![0.3; model.dof()])
     };
     let puma = reference::description("puma560");
-    let copied = follow_the_readme("Copy the file", "readme_copy", &[("src/robot.rs", emitted("puma560").text)]);
+    let copied = follow_the_page("Copy the file", "page_copy", &[("src/robot.rs", emitted("puma560").text)]);
     agree("copied", &copied, &gravity(&puma), ORACLE);
-    let own = follow_the_readme("Generate in your own build", "readme_build", &[("robot.yaml", &puma)]);
+    let own = follow_the_page("Generate in your own build", "page_build", &[("robot.yaml", &puma)]);
     agree("own build", &own, &gravity(&puma), ORACLE);
     let robot = std::fs::read_to_string(workspace().join("robot.yaml")).expect("robot.yaml");
-    let depends = follow_the_readme("Depend on `generated`", "readme_depend", &[]);
+    let depends = follow_the_page("Depend on `generated`", "page_depend", &[]);
     agree("depends", &depends, &gravity(&robot), ORACLE);
     // e = 0.1 (1 + 10 t) exp(-10 t), 4e-9 after two seconds.
-    let controlled = follow_the_readme("Control it", "readme_control", &[]);
+    let controlled = follow_the_page("Control it", "page_control", &[]);
     agree("controlled", &controlled, &vec![0.4; depends.len()], 1e-6);
 }

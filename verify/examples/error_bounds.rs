@@ -1,6 +1,9 @@
-//! Rounding errors of some robots, the worst against 256 bits, beside both bounds, as tables in Markdown; exit code 1 if a bound is exceeded:
-//! `cargo run --release -p armgen-verify --example error_bounds -- 1000000 both robots/*.yaml`, of some functions alone where their names follow.
+//! Rounding errors of some robots, the worst against 256 bits, with both bounds, as CSV; exit code 1 if a bound is exceeded:
+//! `cargo run --release -p armgen-verify --example error_bounds -- 1000000 both --out FOLDER robots/*.yaml` writes a file for each robot and scalar.
+//! Without `--out` the tables are printed. Names of functions after the files measure these alone.
 
+use std::fmt::Write;
+use std::path::Path;
 use std::process::ExitCode;
 
 use armgen_codegen::kinds::Scalar;
@@ -26,14 +29,22 @@ fn main() -> ExitCode {
         _ => None,
     };
     let (Some(states), Some(scalars)) = (states, scalars) else {
-        eprintln!("usage: error_bounds STATES f64|f32|both ROBOT.yaml... [FUNCTION...]");
+        eprintln!("usage: error_bounds STATES f64|f32|both [--out FOLDER] ROBOT.yaml... [FUNCTION...]");
         return ExitCode::from(2);
     };
-    let (paths, functions): (Vec<String>, Vec<String>) = arguments.partition(|argument| argument.ends_with(".yaml"));
+    let mut rest: Vec<String> = arguments.collect();
+    let folder = (rest.first().is_some_and(|word| word == "--out") && rest.len() > 1).then(|| rest.drain(..2).nth(1)).flatten();
+    let (paths, functions): (Vec<String>, Vec<String>) = rest.into_iter().partition(|argument| argument.ends_with(".yaml"));
+    if folder.is_some() && !functions.is_empty() {
+        eprintln!("error_bounds: --out writes whole tables; leave it out to measure single functions");
+        return ExitCode::from(2);
+    }
     let mut all_hold = true;
     for path in paths {
         for &scalar in scalars {
-            match table(&path, scalar, states, &functions) {
+            match table(&path, scalar, states, &functions)
+                .and_then(|table| table.map_or(Ok(true), |table| table.put(folder.as_deref())))
+            {
                 Ok(holds) => all_hold &= holds,
                 Err(reason) => {
                     eprintln!("{path}: {reason}");
@@ -45,13 +56,34 @@ fn main() -> ExitCode {
     ExitCode::from(u8::from(!all_hold))
 }
 
-fn table(path: &str, scalar: Scalar, states: u64, functions: &[String]) -> Result<bool, String> {
+/// The table of a robot.
+struct Table {
+    file: String,
+    text: String,
+    holds: bool,
+}
+
+impl Table {
+    /// Writes the table into a folder, or prints it; returns whether all bounds hold.
+    fn put(self, folder: Option<&str>) -> Result<bool, String> {
+        match folder {
+            Some(folder) => {
+                std::fs::write(Path::new(folder).join(&self.file), &self.text).map_err(|e| format!("{}: {e}", self.file))?
+            }
+            None => println!("{}", self.text),
+        }
+        Ok(self.holds)
+    }
+}
+
+/// Measures the errors of a robot; `None` if its description is refused in this scalar.
+fn table(path: &str, scalar: Scalar, states: u64, functions: &[String]) -> Result<Option<Table>, String> {
     let source = Source::new(path, std::fs::read_to_string(path).map_err(|e| e.to_string())?);
     #[allow(clippy::needless_update)]
     let options = Options { scalar, ..Options::default() };
     let Some(generated) = armgen_codegen::generate(&source, &options).0 else {
-        println!("## {path}, {scalar:?}: refused\n");
-        return Ok(true);
+        eprintln!("{path}, {scalar:?}: refused");
+        return Ok(None);
     };
     let (manipulator, _) = validate::read_for(&source, scalar).0.ok_or("not a valid description")?;
     let module = Module::read(&generated.module)?;
@@ -86,27 +118,25 @@ fn table(path: &str, scalar: Scalar, states: u64, functions: &[String]) -> Resul
     }
     let done = batches * workers * LANES as u64;
     let word = format!("{scalar:?}").to_lowercase();
-    println!("## {}, {word}, {done} states\n", manipulator.name);
-    println!("| function | largest value | worst error | largest running bound | times the error | a-priori bound | singular |");
-    println!("|---|---|---|---|---|---|---|");
-    for s in &seen {
-        let ratio = s.ratio().map_or("exact".into(), |ratio| format!("{ratio:.1}"));
-        let (error, running) = (format!("{:.1e}", s.error), two_digits(s.running));
-        let a_priori = two_digits(s.a_priori);
-        println!("| `{}` | {:.1e} | {error} | {running} | {ratio} | {a_priori} | {} |", s.name, s.value, s.singular);
-    }
-    for s in &seen {
-        let Some(torques) = &s.residual else { continue };
-        let (constant, factor) = (two_digits(torques.bound.constant), two_digits(torques.bound.factor));
-        println!(
-            "\n`{}` is that of torques off by at most {constant} + {factor} max ddq; worst seen {:.1e}, {:.3} of its bound.",
-            s.name, torques.largest, torques.part
-        );
-    }
     let beyond_residual: u64 = seen.iter().filter_map(|s| Some(s.residual.as_ref()?.beyond)).sum();
     let beyond: u64 = beyond_residual + seen.iter().map(|s| s.beyond_running + s.beyond_a_priori).sum::<u64>();
     let outside: u64 = seen.iter().map(|s| s.outside).sum();
-    let widest = seen.iter().filter_map(Seen::ratio).fold(0.0, f64::max);
-    println!("\nBounds exceeded: {beyond} times. Largest ratio: {widest:.1}. States with a divisor too small for the a-priori bound: {outside}.\n");
-    Ok(beyond == 0)
+    let mut text = format!(
+        "# {}, {word}, {done} states; bounds exceeded: {beyond}; states with a divisor too small for the a-priori bound: {outside}\n\
+         function,largest value,worst error,largest running bound,times the error,a-priori bound,singular,torques a,torques b,\
+         worst torque,of its bound\n",
+        manipulator.name
+    );
+    for s in &seen {
+        let ratio = s.ratio().map_or("exact".into(), |ratio| format!("{ratio:.1}"));
+        let (running, a_priori) = (two_digits(s.running), two_digits(s.a_priori));
+        let torques = s.residual.as_ref().map_or(",,,".into(), |torques| {
+            let (a, b) = (two_digits(torques.bound.constant), two_digits(torques.bound.factor));
+            format!("{a},{b},{:.1e},{:.3}", torques.largest, torques.part)
+        });
+        let _ =
+            writeln!(text, "{},{:.1e},{:.1e},{running},{ratio},{a_priori},{},{torques}", s.name, s.value, s.error, s.singular);
+    }
+    let stem = Path::new(path).file_stem().map_or("robot".into(), |stem| stem.to_string_lossy());
+    Ok(Some(Table { file: format!("{stem}-{word}.csv"), text, holds: beyond == 0 }))
 }

@@ -34,12 +34,12 @@ pub(crate) struct Choices {
     /// Passes to leave out, of those that make the functions cheaper (docs/passes.md), separated by commas
     #[arg(long, value_name = "PASSES", value_delimiter = ',', value_parser = crate::pass_parser())]
     without: Vec<Pass>,
-    /// Add functions for many states, so many at a time: 8 suit f64, 16 suit f32 (docs/batches.md); not with --verify, --tests
+    /// Add functions for many states, so many at a time: 8 suit f64, 16 suit f32 (docs/performance.md); not with --verify, --tests
     /// or --bounds, which are of functions for one state
     #[arg(long, value_name = "LANES", value_parser = clap::value_parser!(u16).range(1..=1024))]
     batch: Option<u16>,
     /// Fuse a multiplication with the addition that alone takes its product, which then rounds once: for processors that have
-    /// the operation, in Rust and C (docs/fused.md)
+    /// the operation, in Rust and C (docs/performance.md)
     #[arg(long)]
     fma: bool,
     /// Functions of the module, separated by commas; all if none is named (`armgen count FILE` lists them); not with --verify

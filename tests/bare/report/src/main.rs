@@ -1,7 +1,7 @@
 //! Holds what the firmware printed against this machine's bits and against the budgets, and writes the page about it.
 //!
 //! ```text
-//! armgen-bare-report BUDGETS.toml CONTROL.elf FIRMWARE.elf PRINTED.txt M4F.elf M4F.txt M7.elf M7.txt [--write PAGE.md]
+//! armgen-bare-report BUDGETS.toml CONTROL.elf FIRMWARE.elf PRINTED.txt M4F.elf M4F.txt M7.elf M7.txt [--write PAGE.md TABLE.csv]
 //! ```
 //!
 //! The first program controls an arm and nothing else, the firmware simulates the arm and measures as well; the other two measure the
@@ -42,10 +42,10 @@ fn run() -> Result<Vec<String>, String> {
     let arguments: Vec<&str> = arguments.iter().map(String::as_str).collect();
     let (files, page) =
         match arguments.as_slice() {
-            [files @ .., "--write", page] if files.len() == 8 => (files, Some(page)),
+            [files @ .., "--write", page, table] if files.len() == 8 => (files, Some((page, table))),
             files if files.len() == 8 => (files, None),
             _ => return Err(
-                "usage: armgen-bare-report BUDGETS.toml CONTROL.elf FIRMWARE.elf PRINTED.txt M4F.elf M4F.txt M7.elf M7.txt [--write PAGE.md]"
+                "usage: armgen-bare-report BUDGETS.toml CONTROL.elf FIRMWARE.elf PRINTED.txt M4F.elf M4F.txt M7.elf M7.txt [--write PAGE.md TABLE.csv]"
                     .into(),
             ),
         };
@@ -73,8 +73,9 @@ fn run() -> Result<Vec<String>, String> {
     faults.extend(budgets.exceeded(&measured));
     let page_text = page::page(&measured, &on_m7, &budgets, &printed, postures.len());
     print!("{}", page::summary(&measured, &printed));
-    if let Some(page) = page.filter(|_| faults.is_empty()) {
+    if let Some((page, table)) = page.filter(|_| faults.is_empty()) {
         fs::write(page, page_text).map_err(|e| format!("cannot write {page}: {e}"))?;
+        fs::write(table, page::table(&measured, &on_m7, &budgets)).map_err(|e| format!("cannot write {table}: {e}"))?;
     }
     Ok(faults)
 }

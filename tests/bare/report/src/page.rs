@@ -37,7 +37,7 @@ pub(crate) fn page(measured: &Measured, m7: &Modules, budgets: &Budgets, printed
         page,
         "\n## Torques\n\n\
          {} steps: the torques and the estimated mass are the same on both machines, bit by bit.\n\
-         The last line of each reads:\n\n```text\n{}\n```\n\n\
+         The last line of each is:\n\n```text\n{}\n```\n\n\
          The largest difference between a desired and an actual joint variable is {:.2e} rad or m.\n",
         printed.torques.len(),
         printed.torques.last().map_or("", String::as_str),
@@ -45,7 +45,7 @@ pub(crate) fn page(measured: &Measured, m7: &Modules, budgets: &Budgets, printed
     );
     let _ = write!(
         page,
-        "\n## Instructions per control step\n\n| part | dearest step | mean |\n|---|---:|---:|\n\
+        "\n## Instructions per control step\n\n| part | most expensive step | mean |\n|---|---:|---:|\n\
          | **control step** | **{}** (budget {}) | {} |\n",
         costs.control_step.instructions,
         budgets.control_step.instructions,
@@ -61,7 +61,7 @@ pub(crate) fn page(measured: &Measured, m7: &Modules, budgets: &Budgets, printed
          \n## Memory\n\n| | bytes | budget |\n|---|---:|---:|\n\
          | **flash of the control step**: trajectory, inverse kinematics, controller, start of the program | **{}** | {} |\n\
          | of that `.text` | {} | {} |\n\
-         | flash of the program that simulates the arm, measures and prints as well | {} | {} |\n| of that `.text` | {} | {} |\n\
+         | flash of the program that also simulates the arm, measures and prints | {} | {} |\n| of that `.text` | {} | {} |\n\
          | stack of a control step, at the deepest | {} | {} |\n| static memory | {} | |\n",
         costs.control_program.flash,
         budgets.control_program.flash,
@@ -76,29 +76,27 @@ pub(crate) fn page(measured: &Measured, m7: &Modules, budgets: &Budgets, printed
         measured.data,
     );
     page += FUNCTIONS;
-    for (robot, title) in [("scara", "SCARA"), ("panda7", "Panda")] {
-        page += &table(robot, title, &costs.functions, m7, budgets);
-    }
     page += &inverse_kinematics(&costs.functions, m7, budgets, postures);
     page
 }
 
-/// Every function of one robot, with either source of sines.
-fn table(robot: &str, title: &str, m4f: &Modules, m7: &Modules, budgets: &Budgets) -> String {
-    let mut table = format!(
-        "\n### {title}\n\n\
-         | function | M4F, fast | M4F, libm | M7, fast | M7, libm | `.text`, fast | `.text`, libm | stack, fast | stack, libm |\n\
-         |---|---:|---:|---:|---:|---:|---:|---:|---:|\n"
+/// Every function of both robots, with either source of sines, as CSV.
+pub(crate) fn table(measured: &Measured, m7: &Modules, budgets: &Budgets) -> String {
+    let mut table = String::from(
+        "robot,function,M4F fast,M4F libm,M7 fast,M7 libm,text fast,text libm,stack fast,stack libm,budget M4F fast,budget text fast,budget stack fast\n",
     );
-    let [fast, libm] = ["fast", "libm"].map(|ending| format!("{robot}_{ending}"));
-    for name in m4f.get(&fast).into_iter().flat_map(|functions| functions.keys()) {
-        let (a, b, budget) = (cost(m4f, &fast, name), cost(m4f, &libm, name), cost(&budgets.functions, &fast, name));
-        let [a7, b7] = [&fast, &libm].map(|module| cost(m7, module, name).instructions);
-        let _ = writeln!(
-            table,
-            "| `{name}` | {} ({}) | {} | {a7} | {b7} | {} ({}) | {} | {} ({}) | {} |",
-            a.instructions, budget.instructions, b.instructions, a.text, budget.text, b.text, a.stack, budget.stack, b.stack,
-        );
+    let m4f = &measured.costs.functions;
+    for robot in ["scara", "panda7"] {
+        let [fast, libm] = ["fast", "libm"].map(|ending| format!("{robot}_{ending}"));
+        for name in m4f.get(&fast).into_iter().flat_map(|functions| functions.keys()) {
+            let (a, b, budget) = (cost(m4f, &fast, name), cost(m4f, &libm, name), cost(&budgets.functions, &fast, name));
+            let [a7, b7] = [&fast, &libm].map(|module| cost(m7, module, name).instructions);
+            let _ = writeln!(
+                table,
+                "{robot},{name},{},{},{a7},{b7},{},{},{},{},{},{},{}",
+                a.instructions, b.instructions, a.text, b.text, a.stack, b.stack, budget.instructions, budget.text, budget.stack,
+            );
+        }
     }
     table
 }
@@ -106,8 +104,8 @@ fn table(robot: &str, title: &str, m4f: &Modules, m7: &Modules, budgets: &Budget
 fn inverse_kinematics(m4f: &Modules, m7: &Modules, budgets: &Budgets, postures: usize) -> String {
     let mut text = format!(
         "\n## Postures\n\n\
-         All postures of the SCARA and of the Puma 560 ([inverse kinematics](inverse-kinematics.md)), each at {} poses: {postures} postures, the \
-         same on both processors and on the host, bit by bit.\n\n\
+         All [postures](inverse-kinematics.md) of the SCARA and the Puma 560, each at {} poses: {postures} postures, the same on both \
+         processors and the host, bit by bit.\nBudgets are in parentheses.\n\n\
          | function | M4F | M7 | `.text` | stack |\n|---|---:|---:|---:|---:|\n",
         armgen_bare_functions::postures::POSES,
     );
