@@ -104,7 +104,7 @@ fn help_has_examples() {
         assert!(text.contains("Examples:\n"), "armgen {arguments:?}");
         let name = format!("commands__help {command}").trim().replace(' ', "_");
         insta::with_settings!({ prepend_module_to_snapshot => false }, {
-            insta::assert_snapshot!(name, text);
+            insta::assert_snapshot!(name.as_str(), text);
         });
     }
 }

@@ -61,6 +61,7 @@ fn operations(yaml: &str) -> Vec<(String, usize)> {
 }
 
 #[test]
+#[ignore = "wide"]
 fn no_convention_costs_more() {
     for (name, yaml) in arms().iter().filter(|(name, _)| ["panda7", "ur5", "puma560"].iter().any(|known| name.contains(known))) {
         let own = operations(yaml);
@@ -82,6 +83,7 @@ fn two(second: &str, kind: &str, tool: &str) -> String {
 
 /// Skew, meeting, parallel, antiparallel and coincident lines, and slides in all these places.
 #[test]
+#[ignore = "wide"]
 fn every_place_of_two_lines() {
     let places = [
         "{xyz: [0.3, 0.1, 0.2], rpy: [pi/2, 0, 0]}",

@@ -37,6 +37,7 @@ fn spellings_of_the_text() {
 
 /// Every text that is cut off, or lacks a stretch, has a place for what is wrong with it, or is an arm.
 #[test]
+#[ignore = "wide"]
 fn what_is_left_of_a_file() {
     for text in [include_str!("urdf/everything.urdf"), include_str!("mjcf/everything.xml")] {
         for at in (0..text.len()).step_by(3) {
@@ -200,6 +201,7 @@ fn a_long_line_of_joints_is_walked_without_recursion() {
 }
 
 #[test]
+#[ignore = "wide"]
 fn many_bodies_within_frames_are_read_in_bounded_time() {
     let around = |inside: &str, depth: usize| {
         format!(
