@@ -212,9 +212,9 @@ Exit codes: 0 done, 1 the description is faulty, 2 a file cannot be read or writ
 The text of the module is read back by a checker of its own, which derives the equations from the
 description the textbook's way and compares both, exactly, at random points of prime fields and at
 a rational one. If a certificate, robot.cert.json, stands beside robot.rs, it must be of these two
-texts. The documentation of a module in Rust is judged word for word, of one in another language
-costs, bounds and the head. The compiler is not judged, nor are the sines and cosines themselves:
-for those see docs/sine-and-cosine.md.
+texts. In comments the hash of the description, costs and bounds are judged; other words are not.
+The compiler is not judged, nor are the sines and cosines themselves: for those see
+docs/sine-and-cosine.md.
 Exit codes: 0 equal, 1 not equal or faulty (the first entry that differs is named),
 2 a file cannot be opened or is not UTF-8.")]
     Verify {

@@ -7,12 +7,12 @@ pub mod python;
 pub mod rust;
 
 mod documentation;
-mod language;
-mod origin;
+mod head;
 mod plain;
 mod private;
 
+pub use armgen_description::language::Language;
+pub use armgen_description::origin::Origin;
 pub use documentation::{Described, DescribedParameters};
-pub use language::Language;
-pub use origin::{Notes, Origin};
+pub use head::Notes;
 pub use plain::camel;

@@ -15,6 +15,7 @@ use crate::catalogue::{Absent, Argument, Parameter, Quantity, Sizes};
 use crate::exact::Number;
 use crate::kinds::Scalar;
 use crate::ring::Symbol;
+use armgen_description::language::Language;
 
 /// Where the sines and cosines of the emitted module come from.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -28,6 +29,16 @@ pub enum Trig {
     /// All angles of a function together in vector instructions, within 1 unit in the last place, the same bits on every machine; those of large
     /// angles (beyond 65536 rad in f64, 128 rad in f32) from the crate `libm`.
     Fast,
+}
+
+impl Trig {
+    /// Where the sines and cosines of a language come from unless chosen otherwise.
+    pub fn of_language(language: Language) -> Trig {
+        match language {
+            Language::Rust => Trig::Libm,
+            Language::C | Language::JavaScript | Language::Python | Language::Matlab => Trig::Fast,
+        }
+    }
 }
 
 /// A value that a step uses.

@@ -15,7 +15,11 @@ pub mod document;
 #[doc(hidden)]
 pub mod kinds;
 #[doc(hidden)]
+pub mod language;
+#[doc(hidden)]
 pub mod manipulator;
+#[doc(hidden)]
+pub mod origin;
 #[doc(hidden)]
 pub mod parallel;
 pub mod source;

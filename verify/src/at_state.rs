@@ -1,6 +1,6 @@
 //! What a wrong function is off by: its value and that of the equations at one state in floats, for people. It proves nothing.
 
-use armgen_codegen::manipulator::{Joint, Manipulator};
+use armgen_description::manipulator::{Joint, Manipulator};
 
 use crate::arithmetic::Arithmetic;
 use crate::base;

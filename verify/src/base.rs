@@ -23,7 +23,7 @@
 
 use std::collections::BTreeMap;
 
-use armgen_codegen::manipulator::Manipulator;
+use armgen_description::manipulator::Manipulator;
 
 use crate::arithmetic::degree::Degree;
 use crate::arithmetic::Arithmetic;

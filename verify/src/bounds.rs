@@ -16,10 +16,9 @@
 
 use std::collections::BTreeMap;
 
-use armgen_codegen::emit::Notes;
-use armgen_codegen::kinds::JointKind;
-use armgen_codegen::manipulator::Manipulator;
-use armgen_codegen::parallel::parallel_map;
+use armgen_description::kinds::JointKind;
+use armgen_description::manipulator::Manipulator;
+use armgen_description::parallel::parallel_map;
 
 use crate::arithmetic::wide::Wide;
 use crate::claims::Claims;
@@ -70,7 +69,7 @@ impl Bound {
 /// side, 4 rad/s or 1 m/s, 200 N m or N. Accelerations up to 10, references like what they are references of, parameters within a fifth of
 /// the nominal.
 pub fn domain(manipulator: &Manipulator, nominal: &[f64]) -> Domain {
-    let float = |n: &armgen_codegen::exact::Number| Float::F64.nearest(&formula(n));
+    let float = |n: &armgen_description::exact::Number| Float::F64.nearest(&formula(n));
     let mut domain = Domain::default();
     for joint in &manipulator.joints {
         let revolute = joint.kind == JointKind::Revolute;
@@ -301,7 +300,16 @@ fn sentence(bound: &Bound) -> String {
     }
 }
 
-/// What the documentation of a module says of the bounds of its functions.
+/// The error bounds of a module in words, for its documentation.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Notes {
+    /// Lines for the head of the file: the box.
+    pub head: Vec<String>,
+    /// A sentence for each function, by name.
+    pub functions: BTreeMap<String, String>,
+}
+
+/// The error bounds of functions in words.
 pub fn notes(bounds: &BTreeMap<String, Bound>) -> Notes {
     Notes {
         head: BOX.map(String::from).to_vec(),

@@ -7,7 +7,7 @@
 #[cfg(test)]
 mod tests;
 
-use armgen_codegen::parallel;
+use armgen_description::parallel;
 
 /// What `of` gives for each item, on several threads; all make the checks that this one makes.
 pub(crate) fn parallel_map<T: Sync, R: Send + Sync>(items: &[T], of: impl Fn(&T) -> R + Sync) -> Vec<R> {
@@ -31,8 +31,6 @@ pub(crate) enum Check {
     Fences,
     /// Text: what documentation `cargo test` would run, by indentation or HTML.
     Indentation,
-    /// Items: documentation of constants and types.
-    Documentation,
     /// Items: tokens as armgen writes them.
     Tokens,
     /// Items: signatures of functions.
@@ -135,16 +133,14 @@ pub(crate) enum Check {
     BaseValues,
     /// Comments: the head of the file.
     Head,
-    /// Comments: documentation of functions, but for bounds.
-    Prose,
-    /// Constants: base parameters are the combinations that are stated of them, and all of them.
-    Combinations,
-    /// Comments: documentation of names of parameters.
-    Meanings,
+    /// Comments: the box of rounding errors.
+    StatedBox,
+    /// Comments: facts of functions stand in their documentation alone.
+    Facts,
     /// Functions: their errors as they occur.
     Measured,
-    /// Comments: all of them, in languages other than Rust.
-    Comments,
+    /// Comments: a text in Python that would be a value.
+    Strings,
     /// Comments: operations of a function.
     Cost,
     /// Comments: rounding errors of a function.

@@ -4,7 +4,7 @@ use std::cell::RefCell;
 use std::collections::BTreeMap;
 use std::sync::{Mutex, PoisonError};
 
-use armgen_codegen::manipulator::Manipulator;
+use armgen_description::manipulator::Manipulator;
 
 use crate::arithmetic::degree::{log2_odds, Degree, Degrees};
 use crate::arithmetic::prime::Prime;

@@ -6,7 +6,7 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use armgen_codegen::exact::{self, Number};
+use armgen_description::exact::{self, Number};
 
 use crate::element::Element;
 use crate::enclosure::Float;
@@ -219,7 +219,7 @@ impl Resolved {
 mod tests {
     use super::*;
     use armgen_codegen::schedule::Options;
-    use armgen_codegen::source::Source;
+    use armgen_description::source::Source;
 
     /// A limit that a robot comes near is none.
     #[test]

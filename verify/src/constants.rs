@@ -1,7 +1,7 @@
 //! Constants of a module against the description.
 
-use armgen_codegen::kinds::JointKind;
-use armgen_codegen::manipulator::Manipulator;
+use armgen_description::kinds::JointKind;
+use armgen_description::manipulator::Manipulator;
 
 use crate::arithmetic::prime::Residue;
 use crate::base::OwnParameters;
@@ -168,7 +168,7 @@ fn expected(checker: &Checker, module: &Module, nominal: &[Formula], names: &[St
     let joints = &manipulator.joints;
     let array = |entries: Vec<Expected>| Expected::Array(entries);
     let texts = |texts: Vec<String>| array(texts.into_iter().map(Expected::Text).collect());
-    let bound = |bound: Option<&armgen_codegen::exact::Number>, negative: bool| match bound {
+    let bound = |bound: Option<&armgen_description::exact::Number>, negative: bool| match bound {
         Some(value) => Expected::Number(formula(value)),
         None => Expected::Infinite(negative),
     };

@@ -10,7 +10,7 @@
 //! | q̈ | solution of B q̈ = τ - C q̇ - F - g | [`lagrange`] |
 //!
 //! Nothing here is shared with the generator but the reading of the description into a
-//! [`Manipulator`](armgen_codegen::manipulator::Manipulator): its numbers arrive as text.
+//! [`Manipulator`](armgen_description::manipulator::Manipulator): its numbers arrive as text.
 
 pub mod arm;
 pub mod lagrange;

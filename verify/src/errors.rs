@@ -8,7 +8,7 @@
 //! can come to. So where a bound is the largest yet, states that differ in the last digits are tried as well: the bound is the same there, the
 //! roundings are not.
 
-use armgen_codegen::manipulator::Manipulator;
+use armgen_description::manipulator::Manipulator;
 
 use crate::arithmetic::twofold::{self, Circle, Pair, Twofold, TwofoldArguments};
 use crate::arithmetic::wide::{Wide, WideArguments};

@@ -30,14 +30,10 @@ mod text;
 
 use std::fmt;
 
-use armgen_codegen::emit::c::print_solver;
-use armgen_codegen::emit::rust::print_inverse_kinematics;
-use armgen_codegen::emit::Origin;
-use armgen_codegen::inverse_kinematics as generator;
-use armgen_codegen::kinds::Scalar;
-use armgen_codegen::manipulator::Manipulator;
-use armgen_codegen::source::Source;
-use armgen_codegen::validate;
+use armgen_description::exact::Number;
+use armgen_description::kinds::Scalar;
+use armgen_description::manipulator::Manipulator;
+use armgen_description::source::Source;
 use sha2::{Digest, Sha256};
 
 use crate::check::Check;
@@ -63,12 +59,36 @@ pub fn is_one(text: &str) -> bool {
 }
 
 /// Whether it is one in C.
-fn is_c(text: &str) -> bool {
+pub fn is_c(text: &str) -> bool {
     text.starts_with("/*") && (text.contains("_nearest_to(") || text.contains("\n * There is no inverse kinematics: "))
 }
 
 /// So many rational poses are counted.
 pub const POSES: usize = 64;
+
+/// The generator's part, in the language and the scalar of the module that is verified.
+#[derive(Clone, Debug)]
+pub struct Proposal {
+    /// Exact values, which need no trust, or why the arm has no construction.
+    pub values: Result<Values, String>,
+    /// The module in Rust.
+    pub rust: String,
+    /// The module in C, of a module in C; an error is a fault of the generator.
+    pub c: Option<Result<String, String>>,
+}
+
+/// Exact values of the numbers of a construction, in the order of its text.
+#[derive(Clone, Debug)]
+pub struct Values {
+    /// Of each loop.
+    pub loops: Vec<Vec<Number>>,
+    /// Of the arm's own loop, where it has fewer joints than the pose has rows.
+    pub own: Option<Vec<Number>>,
+    /// Of the link with the given joint.
+    pub given: Vec<Number>,
+    /// A length of the arm's size, m.
+    pub length: Number,
+}
 
 /// What was found of a module of inverse kinematics.
 #[derive(Clone, Debug, Default)]
@@ -182,28 +202,26 @@ impl fmt::Display for Report {
 }
 
 /// Verifies the text of a module of inverse kinematics against the text of its description, with counts at so many rational poses.
-pub fn verify(source: &Source, text: &str, poses: usize) -> Report {
+pub fn verify(source: &Source, text: &str, proposal: &Proposal, poses: usize) -> Report {
     let hash = crate::hash;
     let mut report = Report { input: hash(source.text()), output: hash(text), ..Report::default() };
-    let (read, diagnostics) = validate::read_for(source, Scalar::F64);
-    let Some((manipulator, _)) = read else {
-        report.faults.push(diagnostics.render(source, armgen_codegen::diagnostic::Colour::Never));
-        return report;
+    let manipulator = match crate::arm(source) {
+        Ok(manipulator) => manipulator,
+        Err(faults) => return Report { faults: vec![faults], ..report },
     };
     report.robot.clone_from(&manipulator.name);
     if let Some((line, c)) = hidden(text) {
         report.faults.push(format!("line {line}: the character {}, which cannot be seen", name_of(c)));
         return report;
     }
-    let found = generator::of(&manipulator);
     // A module in C is judged by that in Rust, of which it is a translation.
-    let in_rust = is_c(text).then(|| print_inverse_kinematics(&manipulator, scalar_of(text), &found, &Origin::of(source)));
-    report.translated = in_rust.is_some();
-    if let Err(fault) = fill(&mut report, &manipulator, &found, source, in_rust.as_deref().unwrap_or(text), poses) {
+    report.translated = is_c(text);
+    let in_rust = if report.translated { proposal.rust.as_str() } else { text };
+    if let Err(fault) = fill(&mut report, &manipulator, &proposal.values, source, in_rust, poses) {
         report.faults.push(fault);
     }
     if report.faults.is_empty() && Check::WholeText.is_made() {
-        report.faults.extend(difference(&manipulator, &found, source, text));
+        report.faults.extend(difference(proposal, source, text));
     }
     report
 }
@@ -215,21 +233,14 @@ fn hidden(text: &str) -> Option<(usize, char)> {
 
 /// The first line that is not the one that armgen writes for the description: all that is not judged by what it does, comments and the names of
 /// branches among it. In the first line the name of the file may be another.
-fn difference(
-    manipulator: &Manipulator,
-    found: &Result<generator::InverseKinematics, String>,
-    source: &Source,
-    text: &str,
-) -> Option<String> {
-    let (scalar, origin) = (scalar_of(text), Origin::of(source));
-    let (comment, wanted) = if is_c(text) {
-        ("/* ", print_solver(manipulator, scalar, found, &origin))
-    } else {
-        ("// ", Ok(print_inverse_kinematics(manipulator, scalar, found, &origin)))
+fn difference(proposal: &Proposal, source: &Source, text: &str) -> Option<String> {
+    let (comment, wanted) = match &proposal.c {
+        Some(c) if is_c(text) => ("/* ", c.as_ref()),
+        _ => ("// ", Ok(&proposal.rust)),
     };
     let wanted = match wanted {
         Ok(wanted) => wanted,
-        Err(reason) => return Some(reason),
+        Err(reason) => return Some(reason.clone()),
     };
     let (first, rest) = text.split_once('\n').unwrap_or((text, ""));
     if let Err(fault) = stated::origin(first.strip_prefix(comment).unwrap_or(""), &crate::hash(source.text())) {
@@ -240,7 +251,7 @@ fn difference(
 }
 
 /// The scalar of a module, as it says.
-fn scalar_of(text: &str) -> Scalar {
+pub fn scalar_of(text: &str) -> Scalar {
     let single = ["pub type Real = f32;", "\ntypedef float "].iter().any(|line| text.contains(line));
     if single {
         Scalar::F32
@@ -252,7 +263,7 @@ fn scalar_of(text: &str) -> Scalar {
 fn fill(
     report: &mut Report,
     manipulator: &Manipulator,
-    found: &Result<generator::InverseKinematics, String>,
+    values: &Result<Values, String>,
     source: &Source,
     text: &str,
     poses: usize,
@@ -268,7 +279,7 @@ fn fill(
     let (_, chosen) = text.split_once('\n').unwrap_or_default();
     let seed: [u8; 32] = Sha256::new().chain_update(source.text()).chain_update([0]).chain_update(chosen).finalize().into();
     let mut stream = Stream::of(seed);
-    let claims = claims(found)?;
+    let claims = claims(values)?;
     report.numbers = numbers(&module, manipulator, &claims)?;
     let all: Vec<Formula> = claims.loops.iter().chain(&claims.own).flatten().chain(&claims.given).cloned().collect();
     report.exact_values = all.iter().map(ToString::to_string).collect();
@@ -372,16 +383,15 @@ struct Claims {
     length: Formula,
 }
 
-fn claims(found: &Result<generator::InverseKinematics, String>) -> Result<Claims, String> {
-    let found = found.as_ref().map_err(|reason| format!("the arm has no construction: {reason}"))?;
-    let numbers = |way: &generator::Arrangement| {
-        let frames = way.links.iter().chain([&way.before, &way.after]).flatten().flatten();
-        frames.chain(way.offsets.iter().flatten()).map(formula).collect()
-    };
-    let given =
-        found.given().into_iter().flat_map(|given| [&given.before, &given.after]).flatten().flatten().map(formula).collect();
-    let own = found.own.as_ref().map(numbers);
-    Ok(Claims { loops: found.loops().iter().map(numbers).collect(), own, given, length: formula(&found.length) })
+fn claims(values: &Result<Values, String>) -> Result<Claims, String> {
+    let values = values.as_ref().map_err(|reason| format!("the arm has no construction: {reason}"))?;
+    let formulas = |numbers: &Vec<Number>| numbers.iter().map(formula).collect();
+    Ok(Claims {
+        loops: values.loops.iter().map(formulas).collect(),
+        own: values.own.as_ref().map(formulas),
+        given: formulas(&values.given),
+        length: formula(&values.length),
+    })
 }
 
 /// Whether all numbers are the floats nearest to what is claimed, or to the description; how many there are.
@@ -397,7 +407,7 @@ fn numbers(module: &Text, manipulator: &Manipulator, claims: &Claims) -> Result<
         return Err(format!("DOF: {} where the arm has {} joints", module.dof, manipulator.joints.len()));
     }
     for (i, joint) in manipulator.joints.iter().enumerate() {
-        if module.prismatic[i] != (joint.kind == armgen_codegen::kinds::JointKind::Prismatic) {
+        if module.prismatic[i] != (joint.kind == armgen_description::kinds::JointKind::Prismatic) {
             return Err(format!("PRISMATIC: joint {} is of the other kind", i + 1));
         }
         for (side, infinite) in ["Real::NEG_INFINITY", "Real::INFINITY"].into_iter().enumerate() {
@@ -549,7 +559,7 @@ fn sound(
 
 /// How far each solution is from the pose, in the columns from `first` on, which the target fixes.
 fn misses(arm: &Arm<f64>, outcome: &run::Outcome, pose: &[[f64; 4]; 3], first: usize, manipulator: &Manipulator) -> Vec<f64> {
-    use armgen_codegen::kinds::TaskRow;
+    use armgen_description::kinds::TaskRow;
     let rows = [TaskRow::X, TaskRow::Y, TaskRow::Z].map(|row| manipulator.task.contains(&row));
     let miss = |joints: &Vec<[f64; 2]>| {
         let zeros = vec![0.0; joints.len()];

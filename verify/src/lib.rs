@@ -6,23 +6,31 @@
 //! programs at these points = equations there, exactly; every literal the float nearest to the exact value it is run with
 //! ```
 //!
-//! Shared with the generator is the reading of robot.yaml into a [`Manipulator`], its numbers taken
-//! over as text ([`formula`]), and nothing after it: no expression, no field, no derivation, no optimiser, no emitter. The exact values of
-//! literals come from the generator or from a certificate, and need no trust ([`claims`]).
+//! The checker does not depend on the generator. Both read robot.yaml into a [`Manipulator`] with `armgen-description`; its numbers are taken
+//! over as text ([`formula`]). The exact values of literals come from a certificate, or from a caller that has the generator
+//! (`armgen-certify`), and need no trust ([`claims`]).
 //!
 //! ```no_run
 //! # fn main() -> Result<(), Box<dyn std::error::Error>> {
-//! use armgen_codegen::source::Source;
+//! use armgen_description::source::Source;
+//! use armgen_verify::certificate::Certificate;
 //! let source = Source::new("robot.yaml", std::fs::read_to_string("robot.yaml")?);
-//! let report = armgen_verify::verify(&source, &std::fs::read_to_string("robot.rs")?, None);
-//! println!("{report}");
-//! std::fs::write("robot.cert.json", armgen_verify::certificate::Certificate::of(&report).to_json())?;
+//! let certificate = Certificate::from_json(&std::fs::read_to_string("robot.cert.json")?)?;
+//! println!("{}", armgen_verify::verify(&source, &std::fs::read_to_string("robot.rs")?, &certificate));
 //! # Ok(())
 //! # }
 //! ```
 //!
 //! What is not covered: that the compiler and libm do what they promise. How far rounding takes the functions
 //! from the equations is bounded a priori ([`bounds`](mod@bounds)) and at a state ([`companion`](mod@companion)), and measured ([`errors`]).
+
+// Tests of the checks leave them out one by one, so they need the caller with the generator around this very crate.
+#[cfg(test)]
+#[path = "../../certify/src/lib.rs"]
+#[allow(dead_code, unreachable_pub)]
+pub(crate) mod certify;
+#[cfg(test)]
+extern crate self as armgen_verify;
 
 #[doc(hidden)]
 pub mod arithmetic;
@@ -90,14 +98,12 @@ pub mod test_kit;
 #[doc(hidden)]
 pub mod yardstick;
 
-use armgen_codegen::diagnostic::Diagnostics;
-use armgen_codegen::emit::{Language, Origin};
-use armgen_codegen::kinds::Scalar;
-use armgen_codegen::manipulator::Manipulator;
-use armgen_codegen::pass::{Pass, Passes};
-use armgen_codegen::source::Source;
-use armgen_codegen::validate;
-use armgen_codegen::Generated;
+use armgen_description::diagnostic::Colour;
+use armgen_description::kinds::Scalar;
+use armgen_description::manipulator::Manipulator;
+use armgen_description::origin::Origin;
+use armgen_description::source::Source;
+use armgen_description::validate;
 use sha2::{Digest, Sha256};
 
 use certificate::Certificate;
@@ -144,20 +150,17 @@ pub fn prepare<'a>(
     Ok(Prepared { module, checker })
 }
 
-/// Verifies the text of a module against the text of its description.
+/// Verifies the text of a module against the text of its description, with the exact values of literals that a certificate lists.
 ///
-/// The exact values of literals come from `certificate` or, without one, from a run of the generator; neither is trusted. A certificate must say
-/// what the one says that is written on what is found: each difference is a fault. Faults of the description are rendered into [`Report::faults`].
-pub fn verify<'a>(source: &Source, text: impl Into<ModuleText<'a>>, certificate: Option<&Certificate>) -> Report {
+/// The certificate needs no trust. It must equal the certificate of the report: each difference is a fault. Where it does not fit the texts, no
+/// function is reported. Faults of the description are rendered into [`Report::faults`].
+pub fn verify<'a>(source: &Source, text: impl Into<ModuleText<'a>>, certificate: &Certificate) -> Report {
     let text = text.into();
     let report = Report::of(hash(source.text()), hash(text.text));
-    let module = match Module::read(text) {
-        Ok(module) => module,
-        Err(fault) => return Report { faults: vec![fault.into()], ..report },
-    };
-    let by_generator = || verify_by_generator(source, text, &module);
-    let Some(certificate) = certificate else { return by_generator() };
-    match certificate.claims_for(&module, &report.input, &report.output) {
+    let claims = Module::read(text)
+        .map_err(|fault| vec![fault.into()])
+        .and_then(|module| certificate.claims_for(&module, &report.input, &report.output));
+    match claims {
         Ok(claims) => {
             let mut report = verify_with(source, text, claims, Effort::default());
             if report.passed() {
@@ -165,78 +168,23 @@ pub fn verify<'a>(source: &Source, text: impl Into<ModuleText<'a>>, certificate:
             }
             report
         }
-        // Which function is wrong, if one is, is worth knowing all the same.
-        Err(faults) => {
-            let mut report = by_generator();
-            report.faults.extend(faults);
-            report
-        }
+        Err(faults) => Report { faults, ..report },
     }
 }
 
-/// Verifies what the generator has just made from a description.
-pub fn certify(source: &Source, generated: &Generated) -> Report {
-    certify_in(source, generated, Language::Rust)
-}
-
-/// The same for the module in a language.
-pub fn certify_in(source: &Source, generated: &Generated, language: Language) -> Report {
-    let text = generated.in_language(language);
-    let text = ModuleText { language, text: &text };
-    verify_with(source, text, Claims::from_numbers(&generated.constants), Effort::default())
-}
-
-/// That a value of a function can leave the scalar within the limits of the joints, with the place in the description.
-pub fn beyond_the_scalar(source: &Source, function: &str, scalar: Scalar) -> Diagnostics {
-    let (read, mut diagnostics) = validate::read_for(source, scalar);
-    if let Some((manipulator, places)) = read {
-        diagnostics = Diagnostics::default();
-        diagnostics.push(validate::values_leave_the_scalar(&manipulator, &places, scalar, function));
-    }
-    diagnostics
-}
-
-/// Verifies with the constants of the generator. One that was left a pass has others: where some literal of the module is none, they are asked for
-/// pass by pass.
-fn verify_by_generator(source: &Source, text: ModuleText<'_>, module: &Module) -> Report {
-    let verify_without = |without: Passes| {
-        let claims = generated_claims(source, module.real, without);
-        let lacks = claims.lack(module);
-        (verify_with(source, text, claims, Effort::default()), lacks)
-    };
-    let (report, lacks) = verify_without(Passes::default());
-    if report.passed() || !lacks {
-        return report;
-    }
-    let of_pass = |pass: Pass| {
-        let mut without = Passes::default();
-        without.insert(pass);
-        without
-    };
-    let others = Pass::ALL.into_iter().map(of_pass).chain([Passes::all()]).map(verify_without);
-    others.map(|(report, _)| report).find(Report::passed).unwrap_or(report)
-}
-
-/// The constants of the generator for a scalar, without some passes.
-fn generated_claims(source: &Source, real: Float, without: Passes) -> Claims {
-    let scalar = match real {
-        Float::F32 => Scalar::F32,
-        Float::F64 => Scalar::F64,
-    };
-    #[allow(clippy::needless_update)]
-    let options = armgen_codegen::schedule::Options { scalar, without, ..Default::default() };
-    let (generated, _) = armgen_codegen::generate(source, &options);
-    generated.map_or(Claims::none(), |generated| Claims::from_numbers(&generated.constants))
+/// The arm of a description. Faults that only equations show are not looked for: whatever the arm, its equations are derived here and compared.
+fn arm(source: &Source) -> Result<Manipulator, String> {
+    let (read, diagnostics) = validate::structure(source, Scalar::F64).finish();
+    read.map(|(manipulator, _)| manipulator).ok_or_else(|| diagnostics.render(source, Colour::Never))
 }
 
 /// Verifies with chosen claims and effort.
 pub fn verify_with<'a>(source: &Source, text: impl Into<ModuleText<'a>>, claims: Claims, effort: Effort) -> Report {
     let text = text.into();
     let mut report = Report::of(hash(source.text()), hash(text.text));
-    let (read, diagnostics) = validate::read_for(source, Scalar::F64);
-    let Some((manipulator, _)) = read else {
-        report.faults.push(diagnostics.render(source, armgen_codegen::diagnostic::Colour::Never));
-        return report;
+    let manipulator = match arm(source) {
+        Ok(manipulator) => manipulator,
+        Err(faults) => return Report { faults: vec![faults], ..report },
     };
     report.robot.clone_from(&manipulator.name);
     match prepare(manipulator, text, claims, effort) {
@@ -249,38 +197,13 @@ pub fn verify_with<'a>(source: &Source, text: impl Into<ModuleText<'a>>, claims:
 /// The text of a test file for a project that has the module: what [`test_kit`](mod@test_kit) describes. `import` brings the module in as
 /// `robot`: `use my_crate::robot;`, or `#[path = "../src/robot.rs"] mod robot;`.
 pub fn test_kit(source: &Source, text: &str, import: &str) -> Result<String, String> {
-    let (read, diagnostics) = validate::read_for(source, Scalar::F64);
-    let (manipulator, _) = read.ok_or_else(|| diagnostics.render(source, armgen_codegen::diagnostic::Colour::Never))?;
-    test_kit::test_kit(&manipulator, &Module::read(text)?, import, &Origin::of(source))
+    test_kit::test_kit(&arm(source)?, &Module::read(text)?, import, &Origin::of(source))
 }
 
 /// The same for a module in another language than Rust; `name` is what the module is called where it is taken in: a file of C or JavaScript, a
 /// module of Python, a package of MATLAB.
 pub fn test_kit_in(source: &Source, text: ModuleText<'_>, name: &str) -> Result<String, String> {
-    let (read, diagnostics) = validate::read_for(source, Scalar::F64);
-    let (manipulator, _) = read.ok_or_else(|| diagnostics.render(source, armgen_codegen::diagnostic::Colour::Never))?;
-    test_kit::in_language(&manipulator, &Module::read(text)?, text.language, name, &Origin::of(source))
-}
-
-/// Puts the error bounds of all functions into the documentation of what was generated: see [`bounds`](mod@bounds).
-pub fn document_bounds(source: &Source, generated: &mut Generated) -> Result<(), String> {
-    let (read, diagnostics) = validate::read_for(source, Scalar::F64);
-    let (manipulator, _) = read.ok_or_else(|| diagnostics.render(source, armgen_codegen::diagnostic::Colour::Never))?;
-    let module = Module::read(&generated.module)?;
-    let bounds = bounds::of(&manipulator, &module, &Claims::from_numbers(&generated.constants));
-    generated.annotate(&bounds::notes(&bounds));
-    Ok(())
-}
-
-/// The companion of what was generated, with a running error bound for each function: see [`companion`](mod@companion). `import` brings in the
-/// module's types: `use super::robot::*;`.
-pub fn companion(generated: &Generated, import: &str) -> Result<String, String> {
-    companion::companion(&Module::read(&generated.module)?, &Claims::from_numbers(&generated.constants), import)
-}
-
-/// What follows in the companion where inverse kinematics is emitted too: see [`companion::of_inverse_kinematics`].
-pub fn companion_of_inverse_kinematics(generated: &Generated) -> Result<String, String> {
-    Ok(companion::of_inverse_kinematics(&Module::read(&generated.module)?))
+    test_kit::in_language(&arm(source)?, &Module::read(text)?, text.language, name, &Origin::of(source))
 }
 
 fn fill(report: &mut Report, prepared: &Prepared) {
@@ -312,6 +235,6 @@ fn fill(report: &mut Report, prepared: &Prepared) {
         }
     }
     report.identities = identities::check(checker, module, &report.functions, &nominal);
-    report.faults.extend(stated::faults(checker, module, report));
+    report.faults.extend(stated::faults(module, report));
     debug_assert!(report.functions.iter().all(|f| f.verdict != Verdict::Equal || f.points > 0));
 }

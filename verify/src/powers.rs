@@ -24,7 +24,7 @@
 
 use std::collections::BTreeMap;
 
-use armgen_codegen::manipulator::Manipulator;
+use armgen_description::manipulator::Manipulator;
 
 use crate::arithmetic::growth::{Beyond, Growth, Growths};
 use crate::arithmetic::Arithmetic;

@@ -7,7 +7,6 @@
 
 mod body;
 mod c;
-mod comments;
 mod constant;
 mod documentation;
 mod items;
@@ -22,7 +21,7 @@ mod sines;
 use std::collections::{BTreeMap, BTreeSet};
 use std::sync::atomic::AtomicUsize;
 
-use armgen_codegen::emit::Language;
+use armgen_description::language::Language;
 
 use crate::check::{parallel_map, Check};
 use crate::contract::Sizes;
@@ -30,17 +29,23 @@ use crate::enclosure::Float;
 use crate::program::Program;
 use body::Shared;
 pub(crate) use c::in_the_name_of;
-pub(crate) use comments::fixed as fixed_comments;
-pub use comments::Comment;
 pub use constant::Constant;
 use items::Items;
 pub use lexer::Fault;
 pub(crate) use lexer::{is_hidden, name_of};
 pub(crate) use plain::camel;
-pub(crate) use python::structure;
 
 /// The longest text that is read, in bytes; that of a chain of 32 joints has a third of it.
 pub const LONGEST: usize = 32 << 20;
+
+/// How a line begins that states a fact of a function.
+pub(crate) const FACTS: [&str; 2] = ["Cost: ", "Rounding error: "];
+
+/// Whether a line of a comment states a fact of a function.
+pub(crate) fn is_fact(line: &str) -> bool {
+    let words = line.trim_start_matches([' ', '/', '*', '%', '#']);
+    FACTS.iter().any(|fact| words.starts_with(fact))
+}
 
 /// The text of a module and the language that it is in; a mere text is in Rust.
 #[derive(Clone, Copy, Debug)]
@@ -74,10 +79,8 @@ pub struct Module {
     pub trig: Option<&'static str>,
     /// Comments in front of all items, without the slashes.
     pub head: Vec<String>,
-    /// The documentation of constants that name parameters, line by line, where all documentation is judged: in Rust.
-    pub documentation: Option<BTreeMap<String, Vec<String>>>,
-    /// All comments, in languages other than Rust.
-    pub comments: Vec<Comment>,
+    /// Lines of the text that state the cost or the rounding error of a function.
+    pub facts: usize,
     /// Constants by name.
     pub constants: BTreeMap<String, Constant>,
     /// Public functions in the order of the text, or what is wrong with each.
@@ -104,7 +107,7 @@ impl Module {
             Language::Python => python::read(text),
             Language::Matlab => matlab::read(text),
         }?;
-        Ok(Module { comments: comments::of_module(language, text)?, ..module })
+        Ok(Module { facts: text.lines().filter(|line| is_fact(line)).count(), ..module })
     }
 
     /// Nothing, with floats of 64 bits.
@@ -114,8 +117,7 @@ impl Module {
             real: Float::F64,
             trig: None,
             head: Vec::new(),
-            documentation: None,
-            comments: Vec::new(),
+            facts: 0,
             constants: BTreeMap::new(),
             functions: Vec::new(),
         }
@@ -166,10 +168,7 @@ impl Module {
             }
         }
         let head = items.head.iter().map(ToString::to_string).collect();
-        let lines = |lines: &Vec<&str>| lines.iter().map(ToString::to_string).collect();
-        let documentation = items.documentation.iter().map(|(name, found)| ((*name).to_string(), lines(found))).collect();
-        let documentation = Some(documentation);
-        Ok(Module { real, trig, head, documentation, constants, functions, ..Module::empty(Language::Rust) })
+        Ok(Module { real, trig, head, constants, functions, ..Module::empty(Language::Rust) })
     }
 
     /// The sizes that its constants state.

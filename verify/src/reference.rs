@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use armgen_codegen::manipulator::Manipulator;
+use armgen_description::manipulator::Manipulator;
 
 use crate::arithmetic::dual::Dual;
 use crate::arithmetic::Arithmetic;

@@ -8,8 +8,8 @@
 //! What remains, another sum that is as wrong, costs a reading and a run for each try. 2^40 tries at odds of 2^-168 each leave 2^-128
 //! ([`crate::report::MOST_LOG2_ODDS`]).
 
-use armgen_codegen::exact::{Number, Polynomial};
-use armgen_codegen::manipulator::{Body, Joint, Manipulator, PlacedBody, Placement, Pose, RegressorChoice};
+use armgen_description::exact::{Number, Polynomial};
+use armgen_description::manipulator::{Body, Joint, Manipulator, PlacedBody, Placement, Pose, RegressorChoice};
 use sha2::{Digest, Sha256};
 
 use crate::claims::{Claims, Resolved};

@@ -8,8 +8,8 @@ mod languages;
 
 use std::fmt::Write;
 
-use armgen_codegen::emit::{Language, Origin};
-use armgen_codegen::manipulator::{Joint, Manipulator};
+use armgen_description::manipulator::{Joint, Manipulator};
+use armgen_description::{language::Language, origin::Origin};
 
 use crate::arithmetic::wide::{Wide, WideArguments};
 use crate::arithmetic::Arithmetic;

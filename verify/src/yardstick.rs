@@ -6,7 +6,7 @@
 
 use std::collections::BTreeMap;
 
-use armgen_codegen::manipulator::{Joint, Manipulator};
+use armgen_description::manipulator::{Joint, Manipulator};
 
 use crate::arithmetic::running::{Running, RunningNumbers};
 use crate::arithmetic::Arithmetic;

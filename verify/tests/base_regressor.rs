@@ -2,6 +2,7 @@
 
 use crate::common;
 
+use armgen_certify::{certify, verify};
 use armgen_codegen::kinds::Scalar;
 use armgen_codegen::manipulator;
 use armgen_codegen::validate;
@@ -9,13 +10,13 @@ use armgen_verify::base::OwnParameters;
 use armgen_verify::certificate::Certificate;
 use armgen_verify::checker::{Checker, Effort};
 use armgen_verify::claims::Claims;
+use armgen_verify::constants;
 use armgen_verify::element::Element;
 use armgen_verify::equations::parameters::{Standard, Vector};
 use armgen_verify::formula::{Formula, Rational};
 use armgen_verify::program::{Angle, Output, Program, Step};
 use armgen_verify::reader::{Function, Module};
 use armgen_verify::report::Verdict;
-use armgen_verify::{certify, constants, verify};
 
 /// A `base_regressor` that can be changed, with its parameters.
 #[derive(Clone)]

@@ -8,6 +8,7 @@ use crate::common;
 use std::path::Path;
 use std::process::Command;
 
+use armgen_codegen::emit::Notes;
 use armgen_codegen::kinds::Scalar;
 use armgen_codegen::manipulator::Manipulator;
 use armgen_codegen::schedule::Options;
@@ -133,7 +134,8 @@ fn bounds_are_rounded_up_and_stand_in_the_documentation() {
     }
     let mut generated = common::generate(&common::source("scara"), Scalar::F64);
     let (_, module, claims, manipulator) = robot("scara", Scalar::F64);
-    generated.annotate(&notes(&of(&manipulator, &module, &claims)));
+    let bounds = notes(&of(&manipulator, &module, &claims));
+    generated.annotate(&Notes { head: bounds.head, functions: bounds.functions });
     let documented = generated.module;
     let stated = documented.lines().filter(|line| line.starts_with("/// Rounding error: ")).count();
     assert_eq!(stated, module.functions.len());

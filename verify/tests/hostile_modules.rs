@@ -1,10 +1,14 @@
 //! Whatever text is given for a module, the checker ends, on a small stack too, and says what is wrong and where.
 
+use armgen_codegen::diagnostic::Colour;
 use armgen_codegen::emit::Language;
 use armgen_codegen::pass::{Pass, Passes};
 use armgen_codegen::schedule::Options;
 use armgen_codegen::source::Source;
+use armgen_verify::checker::Effort;
+use armgen_verify::claims::Claims;
 use armgen_verify::reader::{matlab, Module, ModuleText, LONGEST};
+use armgen_verify::verify_with;
 
 const ROBOT: &str = include_str!("../../tests/robots/single_joint.yaml");
 
@@ -21,7 +25,7 @@ fn module() -> String {
 fn fault(old: &str, new: &str) -> Option<String> {
     let module = module();
     assert!(module.contains(old), "{old} is not in the module");
-    armgen_verify::verify(&source(), &module.replacen(old, new, 1), None).first_fault()
+    armgen_certify::verify(&source(), &module.replacen(old, new, 1), None).first_fault()
 }
 
 const GRAVITY: &str = "pub fn gravity(q: &[Real; DOF]) -> [Real; DOF] {";
@@ -99,7 +103,7 @@ fn texts_beyond_every_module_are_refused() {
 
 #[test]
 fn what_is_no_module_is_told_apart() {
-    let of = |text: &str| armgen_verify::verify(&source(), text, None).first_fault().expect("a fault");
+    let of = |text: &str| armgen_certify::verify(&source(), text, None).first_fault().expect("a fault");
     assert!(of("").contains("no type `Real`"), "{}", of(""));
     assert!(of("pub fn f() {").contains("line 1: `f` is not a function"), "{}", of("pub fn f() {"));
     let cut = module();
@@ -178,7 +182,7 @@ fn the_first_line_is_a_comment() {
         assert!(text.contains("from robot.yaml (input "), "{language:?}");
         for name in ["a */ #define else /*", "a /* b", "a\\", "a??/", "coding: latin-1", "a.yaml (input 0) b", "a\u{115f}"] {
             let text = text.replacen("from robot.yaml (input ", &format!("from {name} (input "), 1);
-            let fault = armgen_verify::verify(&source(), ModuleText { language, text: &text }, None).first_fault();
+            let fault = armgen_certify::verify(&source(), ModuleText { language, text: &text }, None).first_fault();
             assert!(fault.is_some(), "{language:?}: {name}");
         }
     }
@@ -188,33 +192,9 @@ fn the_first_line_is_a_comment() {
         let generated = armgen_codegen::generate(&source, &Options::default()).0.expect("a module");
         for language in Language::ALL {
             let text = generated.in_language(language);
-            assert_eq!(armgen_verify::verify(&source, ModuleText { language, text: &text }, None).first_fault(), None, "{name}");
+            assert_eq!(armgen_certify::verify(&source, ModuleText { language, text: &text }, None).first_fault(), None, "{name}");
         }
     }
-}
-
-/// By how much the axes of the last link are turned follows from the description.
-#[test]
-fn what_is_said_of_the_last_link_is_so() {
-    let said = "/// The x axis of the last link stands ";
-    let behind = "/// of mass of the link, payload included, lies on it: its mcy is 0.\n";
-    let verdict = |source: &Source, text: &str| armgen_verify::verify(source, text, None).first_fault();
-    let turned = Source::new("robot.yaml", include_str!("../../tests/robots/dry_friction.yaml"));
-    let module = armgen_codegen::generate(&turned, &Options::default()).0.expect("a module").module;
-    let at = module.find(said).expect("the last link is turned");
-    let end = at + module[at..].find(behind).expect("two lines") + behind.len();
-    let sentence = &module[at..end];
-    let angle = sentence[said.len()..].split(' ').next().expect("an angle");
-    assert_eq!(verdict(&turned, &module), None);
-    let other = sentence.replacen(angle, "1e300", 1);
-    check(verdict(&turned, &module.replacen(sentence, &other, 1)), "the documentation says");
-    check(verdict(&turned, &module.replacen(sentence, "", 1)), "the documentation says");
-    let straight = Source::new("robot.yaml", include_str!("../../robots/puma560.yaml"));
-    let module = armgen_codegen::generate(&straight, &Options::default()).0.expect("a module").module;
-    assert!(!module.contains(said));
-    let note = "take `regressor: base`, which has all.\n";
-    assert!(module.contains(note));
-    check(verdict(&straight, &module.replacen(note, &format!("{note}{other}"), 1)), "the documentation says");
 }
 
 /// A module that was made without a pass is right without its certificate, too: its constants are those of the generator without that pass.
@@ -228,7 +208,7 @@ fn modules_made_without_a_pass_are_right() {
         without.insert(pass);
         let module = armgen_codegen::generate(&source, &Options { without, ..Options::default() }).0.expect("a module").module;
         others += usize::from(module != armgen_codegen::generate(&source, &Options::default()).0.expect("a module").module);
-        assert_eq!(armgen_verify::verify(&source, &module, None).first_fault(), None, "without {pass:?}");
+        assert_eq!(armgen_certify::verify(&source, &module, None).first_fault(), None, "without {pass:?}");
     }
     assert!(others > 5);
 }
@@ -251,7 +231,7 @@ fn short_links_are_no_loss() {
         );
         let source = Source::new("two.yaml", text);
         let module = armgen_codegen::generate(&source, &Options::default()).0.expect("a module").module;
-        assert_eq!(armgen_verify::verify(&source, &module, None).first_fault(), None, "{length} {twist}");
+        assert_eq!(armgen_certify::verify(&source, &module, None).first_fault(), None, "{length} {twist}");
     }
 }
 
@@ -268,9 +248,9 @@ fn long_exact_values_are_bounded() {
     println!("{:?}", start.elapsed());
 }
 
-/// Comments cost as much as they are long.
+/// A million comments are passed over in the time that a text of their length takes.
 #[test]
-fn comments_are_counted() {
+fn comments_cost_as_much_as_they_are_long() {
     let generated = armgen_codegen::generate(&source(), &Options::default()).0.expect("a module");
     for (language, comment) in [
         (Language::C, "/* a */\n"),
@@ -279,7 +259,33 @@ fn comments_are_counted() {
         (Language::Matlab, "% a\n\n"),
     ] {
         let text = generated.in_language(language) + &comment.repeat(1_000_000);
-        let fault = Module::read(ModuleText { language, text: &text }).expect_err("too many").to_string();
-        check(Some(fault), "more than 65536 comments");
+        let start = std::time::Instant::now();
+        assert!(Module::read(ModuleText { language, text: &text }).is_ok(), "{language:?}");
+        println!("{language:?}: {:?}", start.elapsed());
+    }
+}
+
+/// Faults of a description that only equations show. The checker reads without the generator, so it meets such arms: it ends, and accepts no
+/// module that was made for an arm beside them.
+#[test]
+fn arms_whose_equations_are_faulty_have_no_module() {
+    let without_parameters = "regressor: [k, r, phi, m]";
+    for (text, fault, valid) in [
+        (include_str!("../../tests/bad/singular-inertia.yaml"), "link: {mass: 0}", "link: {mass: 1}"),
+        (include_str!("../../tests/bad/nonlinear-parameter.yaml"), without_parameters, "regressor: [m]"),
+        (include_str!("../../tests/bad/nonlinear-parameter-product.yaml"), "regressor:", "#"),
+        (include_str!("../../tests/bad/nonlinear-parameter-length.yaml"), "regressor:", "#"),
+        (include_str!("../../tests/bad/immovable-task.yaml"), "task: [z, rx]", "task: [x]"),
+    ] {
+        assert!(text.contains(fault), "{text}");
+        let beside = Source::new("robot.yaml", text.replacen(fault, valid, 1));
+        let (generated, diagnostics) = armgen_codegen::generate(&beside, &Options::default());
+        let generated = generated.unwrap_or_else(|| panic!("{}", diagnostics.render(&beside, Colour::Never)));
+        let faulty = Source::new("robot.yaml", text);
+        assert!(armgen_codegen::generate(&faulty, &Options::default()).0.is_none(), "{text}");
+        let claims = Claims::from_numbers(&generated.constants);
+        let report = verify_with(&faulty, &generated.module, claims, Effort::default());
+        println!("{:?}", report.first_fault());
+        assert!(!report.passed(), "{text}");
     }
 }

@@ -2,6 +2,7 @@
 
 use crate::common;
 
+use armgen_certify::{certify, verify};
 use armgen_codegen::kinds::Scalar;
 use armgen_codegen::source::Source;
 use armgen_codegen::validate;
@@ -11,7 +12,7 @@ use armgen_verify::claims::Claims;
 use armgen_verify::reader::Module;
 use armgen_verify::report::MOST_LOG2_ODDS;
 use armgen_verify::stream::Stream;
-use armgen_verify::{certify, seed, verify, verify_with};
+use armgen_verify::{seed, verify_with};
 
 /// The first bits of the points for a text.
 fn bits(source: &Source, text: &str, claims: &Claims) -> u64 {

@@ -2,6 +2,7 @@
 
 use crate::common;
 
+use armgen_certify::{certify, verify};
 use armgen_codegen::kinds::Scalar;
 use armgen_codegen::program::Trig;
 use armgen_codegen::schedule::Options;
@@ -9,7 +10,7 @@ use armgen_codegen::source::Source;
 use armgen_verify::certificate::Certificate;
 use armgen_verify::checker::Effort;
 use armgen_verify::claims::Claims;
-use armgen_verify::{certify, verify, verify_with};
+use armgen_verify::verify_with;
 
 /// Prints the report of each with `--nocapture`.
 fn check(options: &Options) {
@@ -59,7 +60,7 @@ fn the_inverse_kinematics_of_every_robot_is_certified_or_says_why_not() {
         let name = path.file_stem().expect("a name").to_string_lossy().into_owned();
         let source = common::source(&name);
         let text = common::generate(&source, Scalar::F64).inverse_kinematics();
-        let report = armgen_verify::inverse_kinematics::verify(&source, &text, 8);
+        let report = armgen_certify::verify_inverse_kinematics(&source, &text, 8);
         println!("{report}\n");
         assert!(report.passed(), "{name}: {report}");
         if report.absent {

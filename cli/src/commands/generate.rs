@@ -103,7 +103,7 @@ pub(crate) fn run(file: &Path, out: Option<&Path>, choices: &Choices, beside: &B
     };
     let language = choices.language;
     let trig = match choices.trig {
-        None => language.trig(),
+        None => Trig::of_language(language),
         Some(TrigName::Libm) => Trig::Libm,
         Some(TrigName::Std) => Trig::Std,
         Some(TrigName::Fast) => Trig::Fast,
@@ -149,7 +149,7 @@ pub(crate) fn run(file: &Path, out: Option<&Path>, choices: &Choices, beside: &B
     }
     // The bounds are those of one state at a time.
     if choices.batch.is_none() {
-        if let Err(reason) = armgen_verify::document_bounds(&source, &mut generated) {
+        if let Err(reason) = armgen_certify::document_bounds(&source, &mut generated) {
             terminal::warning(&format!("the documentation states no error bounds: {reason}"));
         }
     }
@@ -332,9 +332,9 @@ impl Requested<'_> {
 
     /// The certificate of the module, without which nothing is written.
     fn certificate(&self) -> Result<Output, String> {
-        let report = with_spinner("verifying", || armgen_verify::certify_in(self.source, self.generated, self.language));
+        let report = with_spinner("verifying", || armgen_certify::certify_in(self.source, self.generated, self.language));
         if let Some(function) = report.beyond_the_scalar() {
-            let diagnostics = armgen_verify::beyond_the_scalar(self.source, function, self.scalar);
+            let diagnostics = armgen_certify::beyond_the_scalar(self.source, function, self.scalar);
             return Err(format!(
                 "nothing is written: its errors have no bound\n{}",
                 diagnostics.render(self.source, Colour::Never).trim_end()
@@ -393,7 +393,7 @@ impl Requested<'_> {
         let mut files = Vec::new();
         if self.beside.verify {
             let poses = armgen_verify::inverse_kinematics::POSES;
-            let report = with_spinner("verifying", || armgen_verify::inverse_kinematics::verify(self.source, &text, poses));
+            let report = with_spinner("verifying", || armgen_certify::verify_inverse_kinematics(self.source, &text, poses));
             if let Some(fault) = report.faults.first() {
                 return Err(format!(
                     "nothing is written: the module of inverse kinematics is not verified, {fault}; this is a fault of armgen"
@@ -410,9 +410,9 @@ impl Requested<'_> {
     /// The error bounds at a state.
     fn bounds(&self) -> Result<Output, String> {
         let module = format!("use super::{}::*;", validate::module_name(&self.stem()));
-        let mut companion = armgen_verify::companion(self.generated, &module)?;
+        let mut companion = armgen_certify::companion(self.generated, &module)?;
         if self.beside.ik && self.generated.has_inverse_kinematics_of_pose_alone() {
-            companion += &armgen_verify::companion_of_inverse_kinematics(self.generated)?;
+            companion += &armgen_certify::companion_of_inverse_kinematics(self.generated)?;
         }
         Ok(self.file("_bounds.rs", companion))
     }

@@ -59,7 +59,7 @@ fn verified(description: &Path, module: &Path, language: Option<Language>) -> Re
     input::manipulator(&source, armgen_codegen::kinds::Scalar::F64, input::Warnings::Counted)?;
     let report = with_spinner("verifying", || {
         let module = ModuleText { language, text: text.text() };
-        armgen_verify::verify(&source, module, certificate.as_ref())
+        armgen_certify::verify(&source, module, certificate.as_ref())
     });
     let mut printed = format!("{report}\n");
     if certificate.is_some() {
@@ -118,7 +118,8 @@ fn postures(source: &Source, module: &Path, text: &str) -> Result<u8, u8> {
         terminal::note("`armgen generate` with --ik writes it again, beside its module");
         return Err(FAULTY);
     }
-    let mut report = with_spinner("verifying", || inverse_kinematics::verify(source, text, inverse_kinematics::POSES));
+    let mut report =
+        with_spinner("verifying", || armgen_certify::verify_inverse_kinematics(source, text, inverse_kinematics::POSES));
     let beside = certificate_beside(module);
     let mut certificate = String::new();
     if beside.exists() {

@@ -17,7 +17,7 @@ use self::header::macro_of;
 pub use self::header::{base_parameters_comment, function_comment, parameters_comment};
 pub use self::inverse_kinematics::print_inverse_kinematics;
 pub use self::solver::{print as print_solver, print_test as print_solver_test};
-use super::origin::{Notes, Origin};
+use super::{Notes, Origin};
 use crate::catalogue::Quantity;
 use crate::program::Module;
 

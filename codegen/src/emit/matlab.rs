@@ -7,9 +7,9 @@
 use std::fmt::Write;
 
 use super::documentation::{self, Block, Described, DescribedParameters, Link};
-use super::origin::{Notes, Origin};
 use super::plain::{camel, constants, constants_documentation, described, expression, head, places, waves, Syntax, Value};
 use super::private::filled;
+use super::{Notes, Origin};
 use crate::catalogue::{Argument, Quantity, ResultPart};
 use crate::exact::Number;
 use crate::kinds::Scalar;

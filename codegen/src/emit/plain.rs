@@ -2,7 +2,7 @@
 //! program, and a language says only how it writes an entry, a number and an operator.
 
 use super::documentation::{self, has_base_parameters, Block, Described, DescribedParameters};
-use super::origin::{Notes, Origin};
+use super::{Notes, Origin};
 use crate::catalogue::{Argument, Parameter, Quantity, ResultPart, Sizes};
 use crate::exact::Number;
 use crate::program::listing::{angles, Angle, Expression, Name};
@@ -294,7 +294,7 @@ pub(super) fn constants(module: &Module, first: usize) -> Vec<Constant> {
 /// The lines at the head of a file, each behind the sign of a comment: where it came from, and what the module lacks.
 pub(super) fn head(module: &Module, origin: &Origin, notes: &Notes, sign: &str) -> String {
     let absent = module.absent.iter().map(|absent| format!("There is no `{}`: {}.", absent.function, absent.reason));
-    let lines = origin.head(&notes.head).into_iter().chain(absent);
+    let lines = crate::emit::head::lines(origin, &notes.head).into_iter().chain(absent);
     lines.map(|line| format!("{sign} {line}").trim_end().to_string() + "\n").collect()
 }
 

@@ -7,12 +7,12 @@ mod native;
 use std::fmt::Write;
 
 use super::documentation::{self, Block, Described, DescribedParameters, Link};
-use super::origin::{Notes, Origin};
 use super::plain::{
     asks_for_exponentials, asks_for_signs, constants, constants_documentation, described, expression, head, waves, Syntax, Value,
 };
 use super::private::filled;
 use super::rust::asks_for_sines;
+use super::{Notes, Origin};
 use crate::catalogue::{Argument, Length, Quantity};
 use crate::exact::Number;
 use crate::kinds::Scalar;

@@ -15,9 +15,9 @@ use proc_macro2::TokenStream;
 use quote::{format_ident, quote, ToTokens};
 
 use super::documentation::{self as common, Described, DescribedParameters};
-use super::origin::{Notes, Origin};
 use super::plain::{asks_for_exponentials, asks_for_signs};
 use super::private::SIGN;
+use super::{Notes, Origin};
 use crate::catalogue::{Absent, Length, Quantity, ResultPart, Sizes};
 use crate::exact::Number;
 use crate::kinds::Scalar;
@@ -106,7 +106,11 @@ pub fn print_runtime(module: &Module, origin: &Origin) -> String {
 
 /// The comment that says where a file came from, and notes below it.
 pub(in crate::emit) fn head(origin: &Origin, notes: &[String]) -> String {
-    origin.head(notes).iter().map(|line| format!("// {line}").trim_end().to_string() + "\n").collect::<String>() + "\n"
+    crate::emit::head::lines(origin, notes)
+        .iter()
+        .map(|line| format!("// {line}").trim_end().to_string() + "\n")
+        .collect::<String>()
+        + "\n"
 }
 
 fn format(tokens: TokenStream) -> String {

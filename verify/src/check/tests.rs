@@ -5,18 +5,19 @@ use std::cell::RefCell;
 use std::collections::BTreeSet;
 use std::panic::{catch_unwind, AssertUnwindSafe};
 
-use armgen_codegen::emit::Language;
-use armgen_codegen::kinds::Scalar;
 use armgen_codegen::program::Trig;
 use armgen_codegen::schedule::Options;
-use armgen_codegen::source::Source;
+use armgen_description::kinds::Scalar;
+use armgen_description::language::Language;
+use armgen_description::source::Source;
 
 use super::Check::{self, *};
 use crate::certificate::Certificate;
+use crate::certify::{certify, document_bounds};
 use crate::checker::Effort;
 use crate::claims::Claims;
 use crate::reader::ModuleText;
-use crate::{certify, document_bounds, verify, verify_with};
+use crate::{verify, verify_with};
 
 thread_local! {
     static LEFT_OUT: RefCell<Vec<Check>> = const { RefCell::new(Vec::new()) };
@@ -135,7 +136,7 @@ impl Tally {
     fn certificate_text(&mut self, given: &Given, text: &str, last: Last, layers: &[Layer]) {
         self.peel("certificate", layers, last, || match Certificate::from_json(text) {
             Err(fault) => Some(fault),
-            Ok(read) => verify(&given.source, &given.module, Some(&read)).first_fault(),
+            Ok(read) => verify(&given.source, &given.module, &read).first_fault(),
         });
     }
 }
@@ -194,16 +195,12 @@ fn texts_and_items(tally: &mut Tally, scara: &Given) {
         |tally: &mut Tally, text: &str, layers: &[Layer]| tally.text(scara, text, &format!("{module}\n{text}\n"), layers);
     appended(tally, &"\n".repeat(33 << 20), &[(Length, "the text is longer than 32 MiB")]);
     let documentation = |tally: &mut Tally, new: &str, layers: &[Layer]| tally.module(scara, "", NAMED, new, layers);
-    documentation(
-        tally,
-        "/// Name of the robot.\u{202e}",
-        &[(Visible, "U+202E, which cannot be seen"), (Documentation, "documentation that is not")],
-    );
+    documentation(tally, "/// Name of the robot.\u{202e}", &[(Visible, "U+202E, which cannot be seen")]);
     let runs = "/// Name.\n/// ```\n/// std::process::exit(1)\n/// ```";
-    let not = (Documentation, "documentation that is not `Name of the robot.`");
-    documentation(tally, runs, &[(Fences, "can begin or end a block of code"), not]);
-    documentation(tally, "/// Name.\n///\n///     std::process::exit(1)", &[(Indentation, "two blanks in a row"), not]);
-    documentation(tally, "/// Name of the robot. Rounding error: none.", &[not]);
+    documentation(tally, runs, &[(Fences, "can begin or end a block of code")]);
+    documentation(tally, "/// Name.\n///\n///     std::process::exit(1)", &[(Indentation, "two blanks in a row")]);
+    let elsewhere = [(Facts, "is stated where no function is documented")];
+    documentation(tally, "/// Name of the robot.\n///\n/// Rounding error: none.", &elsewhere);
     tally.module(scara, "", "PartialEq)]", "PartialEq, evil::Evil)]", &[(Tokens, "`,` where an emitted module has `)`")]);
     tally.module(scara, "pub fn gravity(", "q: &[Real; DOF]", "q: &[Real; 4]", &[(Signatures, "`4` where the signature")]);
     appended(
@@ -257,12 +254,7 @@ fn bodies(tally: &mut Tally, scara: &Given) {
     line(tally, "let abc = c2;", &[(Names, "where the name of a value can stand")]);
     line(tally, "let t9 = c2; let t9 = t1;", &[(NamesOnce, "`t9` is given twice")]);
     let cost = (Cost, "the documentation says `Cost: ");
-    let prose = (Prose, "the documentation says `Cost: ");
-    line(
-        tally,
-        "let (s9, c9) = sin_cos(q[1] + q[0]);",
-        &[(Angles, "an angle is a sum of joint variables in their order"), cost, prose],
-    );
+    line(tally, "let (s9, c9) = sin_cos(q[1] + q[0]);", &[(Angles, "an angle is a sum of joint variables in their order"), cost]);
     let deep = format!("let t1 = {}5.0 * c2 + 8.766{};\n", "(".repeat(17), ")".repeat(17));
     tally.module(scara, B, T1, &deep, &[(Brackets, "brackets in more than 16 others")]);
     let (first, twice) = ("result[0][0] = ddq[0];", [(WrittenOnce, "an entry of `result` is written twice")]);
@@ -280,9 +272,9 @@ fn bodies(tally: &mut Tally, scara: &Given) {
     ];
     tally.module(&fused, B, b11, "Real::mul_add(-10.0, c2, 21.526)", &other);
     let deep = format!("let t9 = {}c2{};", "Real::mul_add(2.0, ".repeat(17), ", 1.0)".repeat(17));
-    line(tally, &deep, &[(Brackets, "brackets in more than 16 others"), cost, prose]);
+    line(tally, &deep, &[(Brackets, "brackets in more than 16 others"), cost]);
     // That a product is rounded all the same is seen in the bound alone.
-    let rounded = [cost, (Rounding, "the documentation says `Rounding error: "), prose];
+    let rounded = [cost, (Rounding, "the documentation says `Rounding error: ")];
     tally.module(&fused, B, b11, "10.0 * c2 + 21.526", &rounded);
     let dry = given("dry_friction", &Options::default());
     let known = "pub fn known_torque(";
@@ -313,8 +305,12 @@ fn bodies_in_c(tally: &mut Tally, scara: &Given) {
     let end = function.find("\n}\n").expect("its end");
     let long = function[..end].replace(" t3 ", &format!(" t3{} ", "a".repeat(62))) + &function[end..];
     c("a long name", &long, &[(Long, "where an emitted module has")]);
-    let degrees = function.replacen("joint variables, rad", "joint variables, degrees", 1);
-    c("degrees", &degrees, &[(Comments, "the comment says `* - `q`: joint variables, degrees")]);
+    let python = generated.in_language(Language::Python);
+    let at = python.find("    \"").expect("a text in a list");
+    let value = format!("{}    \"\"\"\"\"\"\n{}", &python[..at], &python[at..]);
+    let module = ModuleText { language: Language::Python, text: &value };
+    let fault = || verify_with(&scara.source, module, scara.claims.clone(), Effort::default()).first_fault();
+    tally.peel("a text in a list", &[(Strings, "a text that is no comment")], Last::Accepted, fault);
 }
 
 fn functions(tally: &mut Tally, scara: &Given) {
@@ -342,13 +338,13 @@ fn functions(tally: &mut Tally, scara: &Given) {
     let high = edited(&high, B, "t1, -0.25", "t1, t1100 - 0.25");
     let said = "the documentation says `Cost: ";
     let growth = (Growth, "inertia_matrix: in [0][2] it takes sine and cosine of `q[1]` to the power 65535");
-    let layers = [growth, (Odds, "inertia_matrix: the odds of a miss are"), (Cost, said), (Prose, said)];
+    let layers = [growth, (Odds, "inertia_matrix: the odds of a miss are"), (Cost, said)];
     tally.text(scara, "a high degree", &high, &layers);
 }
 
 fn floats(tally: &mut Tally, scara: &Given) {
     let said = "the documentation says `Cost: ";
-    let comments = [(Cost, said), (Rounding, "the documentation says `Rounding error: "), (Prose, said)];
+    let comments = [(Cost, said), (Rounding, "the documentation says `Rounding error: ")];
     let entry = |tally: &mut Tally, given: &Given, text: &str, layers: &[Layer]| {
         tally.module(given, B, B11, &text.replace("B11", B11), &[layers, &comments].concat());
     };
@@ -368,7 +364,7 @@ fn floats(tally: &mut Tally, scara: &Given) {
     entry(tally, scara, "B11 + 100000.0 - 100000.0", &[states, measured]);
     // Beside a small entry: the bound of the function is that of another one.
     let (small, lost) = ("[5e-5 * dq[0],", "[5e-5 * dq[0] + 0.02 - 0.02,");
-    let of_friction = [intervals, states, (Cost, said), (Prose, said)];
+    let of_friction = [intervals, states, (Cost, said)];
     tally.module(scara, "pub fn friction(", small, lost, &of_friction);
     // Finite in the box, and not a number where q[2] is 2.
     let powers: String = (901..911).map(|k| format!("let t{k} = t{0} * t{0}; ", k - 1)).collect();
@@ -407,7 +403,7 @@ fn floats(tally: &mut Tally, scara: &Given) {
     forward(tally, &single, "t29 * 1e25 * 1e25 * 1e-25 * 1e-25", &[leaves, headroom, of_single]);
     // Two roundings more do not change the two digits of the bound that is stated.
     let scaled = "[t29 * 1e30 * 1e-30,";
-    tally.module(&single, "pub fn forward_dynamics(", "[t29,", scaled, &[headroom, (Cost, said), (Prose, said)]);
+    tally.module(&single, "pub fn forward_dynamics(", "[t29,", scaled, &[headroom, (Cost, said)]);
     forward(tally, &single, "t29 * 1e-25 * 1e-25 * 1e25 * 1e25", &[of_single]);
 }
 
@@ -415,12 +411,12 @@ fn floats(tally: &mut Tally, scara: &Given) {
 fn signs(tally: &mut Tally) {
     let load = given("load_friction", &Options::default());
     let said = "the documentation says `Cost: ";
-    let comments = [(Cost, said), (Rounding, "the documentation says `Rounding error: "), (Prose, said)];
+    let comments = [(Cost, said), (Rounding, "the documentation says `Rounding error: ")];
     let twice = (SignsOnce, "it takes the sign of one torque in two forms");
     let entry = "44.145 * c3 - 25.48712763337603 * s3,";
     let other = [(LoadSigns, "gravity: it takes the sign of what is no gravity torque"), twice];
     let difference = "44.145 * c3 - 25.48712763337603 * s3 + 12.0 * (sign(c3 + c3) - sign(2.0 * c3)),";
-    tally.module(&load, "pub fn gravity(", entry, difference, &[&other[..], &[(Cost, said), (Prose, said)]].concat());
+    tally.module(&load, "pub fn gravity(", entry, difference, &[&other[..], &[(Cost, said)]].concat());
     let (torque, again) = ("(sign(t1) * t1)", "(sign(t1) * t1) + sign(t1) - sign(44.145 * c3 - 25.48712763337603 * s3)");
     tally.module(&load, "pub fn load_friction(", torque, again, &[&[twice][..], &comments].concat());
 }
@@ -436,12 +432,7 @@ fn constants(tally: &mut Tally, scara: &Given) {
 
 /// Names and exact values of base parameters are the module's choice, within limits.
 fn base_parameters(tally: &mut Tally, scara: &Given) {
-    let twice = [
-        (Modular, "column `Fm1` is no combination of the torques of"),
-        (BaseNames, "`Fm1` stands there twice"),
-        (Meanings, "BASE_PARAMETER_NAMES: the documentation says"),
-        (Combinations, "BASE_PARAMETER_NAMES: the base parameter `Fm2` is not there"),
-    ];
+    let twice = [(Modular, "column `Fm1` is no combination of the torques of"), (BaseNames, "`Fm1` stands there twice")];
     tally.module(scara, "const BASE_PARAMETER_NAMES", "\"Fm2\"", "\"Fm1\"", &twice);
     // Nearer to the literal than any float, and not the value.
     let off = |given: &Given, constant: &str, entry: usize| {
@@ -455,25 +446,10 @@ fn base_parameters(tally: &mut Tally, scara: &Given) {
         (Modular, "with NOMINAL_BASE_PARAMETERS it does not give the torque, at point 1"),
         (Rational, "with NOMINAL_BASE_PARAMETERS it does not give the torque, at rational point 1"),
         (BaseValues, "is not the standard parameter `Fm2`"),
-        (Combinations, "is not the combination that is stated of `Fm2`"),
         (Identities, "Y_b pi_b = tau does not hold"),
     ];
     let fault = || verify_with(&scara.source, &scara.module, claims.clone(), Effort::default()).first_fault();
     tally.peel("a base parameter that is none", &layers, Last::Accepted, fault);
-    // A column twice as large, of half of its combination.
-    let mut text = edited(&scara.module, "const NOMINAL_BASE_PARAMETERS", "5.0,", "2.5,");
-    for (old, new) in [("result[0][1] = t2 + 0.5 * t5;", "result[0][1] = t1 + t5;"), ("result[1][1] = t2;", "result[1][1] = t1;")]
-    {
-        text = edited(&text, "pub fn base_regressor_into(", old, new);
-    }
-    let mut certificate = scara.certificate.clone();
-    let values = certificate.constants.iter_mut().find(|c| c.name == "NOMINAL_BASE_PARAMETERS").expect("values");
-    values.literals[1].1 = "5/2".into();
-    let claims = certificate.claims().expect("formulas");
-    let said = "the documentation says `Cost: ";
-    let layers = [(Cost, said), (Prose, said), (Combinations, "[1] is not the combination that is stated of `mcx2R`: 5/2")];
-    let fault = || verify_with(&scara.source, &text, claims.clone(), Effort::default()).first_fault();
-    tally.peel("a column in another unit", &layers, Last::Accepted, fault);
     let base_set = given("base_set", &Options::default());
     let claims = off(&base_set, "NOMINAL_PARAMETERS", 0);
     let layers = [
@@ -512,25 +488,15 @@ fn base_parameters(tally: &mut Tally, scara: &Given) {
         (Columns, "its column depends on those before it"),
         (BaseNames, "`mcx2R` stands there twice"),
         (Cost, "base_regressor: the documentation says `Cost: "),
-        (Prose, "base_regressor: the documentation says `Cost: "),
-        (Meanings, "BASE_PARAMETER_NAMES: the documentation says"),
-        (Combinations, "[1] is not the combination that is stated of `mcx2R`"),
     ];
     tally.text(scara, "a column twice", &text, &layers);
 }
 
 fn comments(tally: &mut Tally, scara: &Given) {
     let rounding = |why: &'static str| (Rounding, why);
-    let head = [
-        (Head, "the head of the file: `another description."),
-        rounding("Rounding error: "),
-        (Prose, "the documentation says ``, not nothing"),
-    ];
-    tally.module(scara, "", "// the description.", "// another description.", &head);
-    let gravity = [(Prose, "gravity: the documentation says `Gravity term g(q) on the right")];
-    tally.module(scara, "/// Gravity term g(q) on", "on the left", "on the right", &gravity);
-    let meaning = [(Meanings, "PARAMETER_NAMES: the documentation says `m_l3  parameter of the description, 15`")];
-    tally.module(scara, "", "parameter of the description, 10", "parameter of the description, 15", &meaning);
+    tally.module(scara, "", "(input ", "(input 0", &[(Head, "the head of the file: `@generated by armgen")]);
+    let of_box = [(StatedBox, "the head of the file: `Box of the rounding errors")];
+    tally.module(scara, "", "pi rad or 1 m", "1e-9 rad or 1 m", &of_box);
     let at = scara.module.find("pub fn gravity_with(").expect("a function");
     let bound = scara.module[..at].rfind("/// Rounding error: ").expect("its bound");
     let bound = scara.module[bound..].lines().next().expect("a line");

@@ -1,8 +1,8 @@
 //! The arm with its constants as exact numbers, parameters filled in.
 
-use armgen_codegen::exact::{Number, Polynomial};
-use armgen_codegen::kinds::JointKind;
-use armgen_codegen::manipulator::{self, Manipulator};
+use armgen_description::exact::{Number, Polynomial};
+use armgen_description::kinds::JointKind;
+use armgen_description::manipulator::{self, Manipulator};
 
 use super::vector::{add, dot, product, scale, sub, transpose, Matrix, Vector};
 use crate::arithmetic::Arithmetic;

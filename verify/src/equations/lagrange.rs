@@ -1,6 +1,6 @@
 //! B, C, g and the energies after Lagrange: sums over the bodies, derivatives by dual numbers.
 
-use armgen_codegen::parallel::parallel_map;
+use armgen_description::parallel::parallel_map;
 
 use super::arm::{Arm, Joint};
 use super::pose::Pose;

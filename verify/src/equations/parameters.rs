@@ -4,7 +4,7 @@
 //! Base parameters are named after standard ones, those of links in their *joint frames*; a name that ends in R carries others with it.
 //! The matrix M of pi_base = M phi_standard is found from Y_standard = Y_base M at random states.
 
-use armgen_codegen::manipulator::{Manipulator, RegressorChoice};
+use armgen_description::manipulator::{Manipulator, RegressorChoice};
 
 use super::arm::{Arm, Body, Joint};
 use super::lagrange::{friction, spring_energy, spring_torques, Parts};

@@ -1,7 +1,7 @@
 //! An arm as links between joints, over a prime: T = L0 J1 L1 ... Jn Ln.
 
-use armgen_codegen::kinds::Target;
-use armgen_codegen::manipulator::Manipulator;
+use armgen_description::kinds::Target;
+use armgen_description::manipulator::Manipulator;
 
 use super::modular::{Frame, Modulus};
 use crate::arithmetic::prime::{Prime, Residue};

@@ -13,7 +13,7 @@ use crate::equations::state::State;
 use crate::float::Arguments;
 use crate::formula::{Formula, Rational};
 use crate::stream::Stream;
-use armgen_codegen::manipulator::Manipulator;
+use armgen_description::manipulator::Manipulator;
 
 /// A way round the loop: from which joint on, and whether backwards.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -2,8 +2,8 @@
 
 use std::cell::RefCell;
 
-use armgen_codegen::exact::Polynomial;
-use armgen_codegen::manipulator::{Body, Manipulator};
+use armgen_description::exact::Polynomial;
+use armgen_description::manipulator::{Body, Manipulator};
 
 use super::chain::Chain;
 use super::modular::{Frame, Modulus};

@@ -11,7 +11,7 @@
 
 use std::collections::BTreeMap;
 
-use armgen_codegen::emit::Language;
+use armgen_description::language::Language;
 
 use super::plain::{promised, sizes, Body, Comments, Constants, Functions, Lines, Syntax, CONSTANTS};
 use super::{Constant, Fault, Function, Module};
@@ -20,7 +20,7 @@ use crate::contract::{Array, Length, Returned, Sizes};
 use crate::enclosure::Float;
 use crate::program::{Argument, Step};
 
-pub(super) const COMMENTS: Comments = Comments { line: None, block: Some(("/*", "*/")) };
+pub(super) const COMMENTS: Comments = Comments { line: None, block: Some(("/*", "*/")), behind: "" };
 
 const PROLOGUE: &str = include_str!("c/prologue.h");
 const EPILOGUE: &str = include_str!("c/epilogue.h");
@@ -31,11 +31,6 @@ const STRIBECK: &str = include_str!("c/stribeck.h");
 const STD: &str = include_str!("c/std.h");
 const FAST_F64: &str = include_str!("c/fast_f64.h");
 const FAST_F32: &str = include_str!("c/fast_f32.h");
-/// The comments that stand between those texts.
-const BETWEEN: &str = include_str!("c/between.h");
-
-/// Texts that are the same in every module.
-pub(super) const FIXED: [&str; 9] = [PROLOGUE, EPILOGUE, FUSED, SIGN, STRIBECK, STD, FAST_F64, FAST_F32, BETWEEN];
 
 /// The sines of the C library; of angles beyond the range of the module's own ones, where it has some.
 const LIBRARY: &str = "#include <math.h>\n#define ROBOT_SIN(x) sin(x)\n#define ROBOT_COS(x) cos(x)\n";
@@ -171,7 +166,6 @@ pub(super) fn read(text: &str) -> Result<Module, Fault> {
     let mut reader = Reader { robot: &robot, syntax: &syntax, real, sizes, parts: BTreeMap::new(), steps: 0, asks: [false; 3] };
     let functions = reader.all(&mut lines, end.peek(), [trig.is_some(), sign, stribeck])?;
     fixed(&mut lines, EPILOGUE)?;
-    lines.commented_as(&robot.own(BETWEEN), COMMENTS)?;
     if !lines.ended() {
         return Err(lines.fault(format!("{} behind the end of the module", lines.shown())));
     }
@@ -351,8 +345,6 @@ impl<'a> Reader<'a, '_> {
     /// The head of a part; its lines are read where it is called.
     fn part(&mut self, lines: &mut Lines<'a>, name: &'a str) -> Result<(), Fault> {
         let robot = &self.robot.name;
-        let (function, number) = name.rsplit_once("_part_").unwrap_or_default();
-        lines.commented(lines.at - 1, &[&format!(" Part {number} of `{robot}_{function}`. ")])?;
         let mut part = Part { arguments: Vec::new(), taken: 0, given: 0, body: 0, used: false };
         let count = |lines: &Lines<'a>, text: &str| {
             let count = text.parse::<usize>().ok().filter(|count| count.to_string() == text && (1..1 << 20).contains(count));

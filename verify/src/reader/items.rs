@@ -20,64 +20,28 @@ const ALL_LINTS: &str = "#[allow(dead_code, clippy::all)]";
 /// How the name of a function ends that writes its result where the caller says.
 pub(super) const INTO: &str = "_into";
 
-/// The constants that a module may have, with their types and documentation.
-const CONSTANTS: [(&str, &str, &str); 15] = [
-    ("NAME", "&str", "Name of the robot."),
-    ("DOF", "usize", "Number of joints."),
-    ("JOINT_NAMES", "[&str; DOF]", "Names of the joints, base to tip."),
-    ("JOINT_IS_REVOLUTE", "[bool; DOF]", "Whether a joint turns (q in rad) or slides (q in m)."),
-    (
-        "POSITION_LIMITS",
-        "[[Real; 2]; DOF]",
-        "Lowest and highest joint variable, rad or m; infinite where the description gives none.",
-    ),
-    ("VELOCITY_LIMITS", "[Real; DOF]", "Highest joint rate, rad/s or m/s; infinite where the description gives none."),
-    (
-        "EFFORT_LIMITS",
-        "[Real; DOF]",
-        "Highest joint torque on the joint side of the gear, N m or N; infinite where the description gives none.",
-    ),
-    ("TASK_ROWS", "usize", "Number of rows of the operational space."),
-    (
-        "TASK",
-        "[usize; TASK_ROWS]",
-        "Rows of the geometric Jacobian that make up the operational space: 0 1 2 along x y z, 3 4 5 about x y z, in the base frame.",
-    ),
-    ("PARAMETERS", "usize", "Number of parameters."),
-    ("PARAMETER_NAMES", "[&str; PARAMETERS]", IN_PARTS),
-    ("NOMINAL_PARAMETERS", "[Real; PARAMETERS]", "Values of the parameters in the description."),
-    (
-        "BASE_PARAMETERS",
-        "usize",
-        "Number of base parameters: as many as a motion can tell apart, without those that are 0 at the values of the description.",
-    ),
-    ("BASE_PARAMETER_NAMES", "[&str; BASE_PARAMETERS]", IN_PARTS),
-    (
-        "NOMINAL_BASE_PARAMETERS",
-        "[Real; BASE_PARAMETERS]",
-        "Values of the base parameters in the description, the masses of rotors included.",
-    ),
+/// The constants that a module may have, with their types.
+const CONSTANTS: [(&str, &str); 15] = [
+    ("NAME", "&str"),
+    ("DOF", "usize"),
+    ("JOINT_NAMES", "[&str; DOF]"),
+    ("JOINT_IS_REVOLUTE", "[bool; DOF]"),
+    ("POSITION_LIMITS", "[[Real; 2]; DOF]"),
+    ("VELOCITY_LIMITS", "[Real; DOF]"),
+    ("EFFORT_LIMITS", "[Real; DOF]"),
+    ("TASK_ROWS", "usize"),
+    ("TASK", "[usize; TASK_ROWS]"),
+    ("PARAMETERS", "usize"),
+    ("PARAMETER_NAMES", "[&str; PARAMETERS]"),
+    ("NOMINAL_PARAMETERS", "[Real; PARAMETERS]"),
+    ("BASE_PARAMETERS", "usize"),
+    ("BASE_PARAMETER_NAMES", "[&str; BASE_PARAMETERS]"),
+    ("NOMINAL_BASE_PARAMETERS", "[Real; BASE_PARAMETERS]"),
 ];
 
-/// Documentation of names and what they mean, which is judged where these are known.
-const IN_PARTS: &str = "";
-
-/// The documentation of the scalar.
-const SCALAR: &str = "The scalar of all functions.";
-
-/// The struct, and its fields, all behind their documentation.
-const STRUCT: [&str; 2] = [
-    "The terms of the equation of motion at one state.",
-    "#[allow(dead_code)]\n#[derive(Clone, Copy, Debug, PartialEq)]\npub struct EquationsOfMotion {",
-];
-const FIELDS: [[&str; 2]; 3] = [
-    ["Inertia matrix B(q): symmetric, positive definite.", "pub inertia: [[Real; DOF]; DOF],"],
-    [
-        "Coriolis and centrifugal matrix C(q, dq) by Christoffel symbols: dB/dt - 2C is skew-symmetric.",
-        "pub coriolis: [[Real; DOF]; DOF],",
-    ],
-    ["Gravity term g(q), on the left of the equation of motion.", "pub gravity: [Real; DOF],"],
-];
+/// The struct and its fields, behind their documentation.
+const STRUCT: &str = "#[allow(dead_code)]\n#[derive(Clone, Copy, Debug, PartialEq)]\npub struct EquationsOfMotion {";
+const FIELDS: [&str; 3] = ["pub inertia: [[Real; DOF]; DOF],", "pub coriolis: [[Real; DOF]; DOF],", "pub gravity: [Real; DOF],"];
 
 /// A public function.
 #[derive(Clone, Debug)]
@@ -108,10 +72,6 @@ pub(super) struct Items<'a> {
     /// The comments in front of all items.
     pub(super) head: Vec<&'a str>,
     pub(super) real: Option<Float>,
-    /// The first documentation that is not as it must be.
-    undocumented: Option<Fault>,
-    /// The documentation of constants that name parameters.
-    pub(super) documentation: BTreeMap<&'a str, Vec<&'a str>>,
     /// Each at its value.
     pub(super) constants: BTreeMap<&'a str, (&'static str, Parser<'a>)>,
     /// The struct, at its documentation.
@@ -161,10 +121,7 @@ impl<'a> Items<'a> {
         while parser.peek().kind != Kind::End {
             items.item(&mut parser)?;
         }
-        match items.undocumented.take() {
-            Some(fault) => Err(fault),
-            None => Ok(items),
-        }
+        Ok(items)
     }
 
     /// The struct and the constants of base parameters come with the functions that need them, and with no others.
@@ -194,18 +151,9 @@ impl<'a> Items<'a> {
         }
     }
 
-    /// Documentation of one line, as it must stand; said only where nothing else is wrong.
-    fn documented(&mut self, found: &[&str], text: &str, place: &Token<'_>) {
-        if !matches!(found, [line] if line.strip_prefix(' ') == Some(text)) && Check::Documentation.is_made() {
-            self.undocumented.get_or_insert_with(|| place.fault(format!("documentation that is not `{text}`")));
-        }
-    }
-
     fn item(&mut self, parser: &mut Parser<'a>) -> Result<(), Fault> {
+        let documentation = parser.documentation()?;
         let beginning = *parser;
-        while parser.peek().kind == Kind::Documentation {
-            parser.take()?;
-        }
         while parser.eat("#")? {
             // As yet any: what an item must have in front of it follows from the item.
             if parser.is("[") {
@@ -219,15 +167,12 @@ impl<'a> Items<'a> {
         let name = parser.peek();
         let writes = keyword.is("fn") && name.text.ends_with(INTO);
         let is_private = !public && matches!(keyword.text, "fn" | "const") && !name.text.contains("_part_") && !writes;
-        // All but private items, whose documentation is compared with the rest of them.
-        let mut documentation = Vec::new();
         if !is_private {
             *parser = beginning;
-            documentation = parser.documentation()?;
         }
-        let head = Head { beginning, first, keyword, name, documentation };
+        let head = Head { beginning, keyword, name, documentation };
         match (public, keyword.text) {
-            (true, "type") => self.scalar(parser, &head),
+            (true, "type") => self.scalar(parser),
             (true, "const") => self.constant(parser, head),
             (true, "struct") => self.structure(parser, &head),
             (_, "fn") if writes => self.written(parser, &head),
@@ -235,8 +180,6 @@ impl<'a> Items<'a> {
             (false, "fn") if !is_private => {
                 parser.expect(&format!("{ALL_LINTS} #[inline(never)] fn"))?;
                 let part = part(parser, named)?;
-                let (function, number) = name.text.rsplit_once("_part_").unwrap_or_default();
-                self.documented(&head.documentation, &format!("Part {number} of `{function}`."), &head.first);
                 if self.parts.insert(name.text, part).is_some() && Check::Once.is_made() {
                     return Err(name.fault(format!("function `{}` stands twice", name.text)));
                 }
@@ -251,9 +194,8 @@ impl<'a> Items<'a> {
     }
 
     /// `pub type Real = f64;`
-    fn scalar(&mut self, parser: &mut Parser<'a>, head: &Head<'a>) -> Result<(), Fault> {
+    fn scalar(&mut self, parser: &mut Parser<'a>) -> Result<(), Fault> {
         parser.expect(&format!("{LINTS} pub type Real ="))?;
-        self.documented(&head.documentation, SCALAR, &head.first);
         let real = [Float::F64, Float::F32].into_iter().zip(["f64", "f32"]).find(|(_, word)| parser.is(word));
         let word = parser.take()?;
         let (real, _) = real.ok_or_else(|| word.fault(format!("`Real` is {}, neither f64 nor f32", word.shown())))?;
@@ -266,16 +208,11 @@ impl<'a> Items<'a> {
     /// A public constant; its value is read where `Real` is known.
     fn constant(&mut self, parser: &mut Parser<'a>, head: Head<'a>) -> Result<(), Fault> {
         let name = head.name;
-        let known = CONSTANTS.into_iter().find(|(known, ..)| name.is(known));
-        let (known, ty, text) =
+        let known = CONSTANTS.into_iter().find(|(known, _)| name.is(known));
+        let (known, ty) =
             known.ok_or_else(|| name.fault(format!("{} is not a constant that an emitted module has", name.shown())))?;
         let lints = if ty.contains("Real") { ALL_LINTS } else { LINTS };
         parser.expect(&format!("{lints} pub const {known}: {ty} ="))?;
-        if text == IN_PARTS {
-            self.documentation.insert(name.text, head.documentation);
-        } else {
-            self.documented(&head.documentation, text, &head.first);
-        }
         if self.constants.insert(name.text, (ty, *parser)).is_some() && Check::Once.is_made() {
             return Err(name.fault(format!("constant `{known}` stands twice")));
         }
@@ -287,12 +224,9 @@ impl<'a> Items<'a> {
 
     /// The struct of what `equations_of_motion` gives.
     fn structure(&mut self, parser: &mut Parser<'a>, head: &Head<'a>) -> Result<(), Fault> {
-        let [text, begin] = STRUCT;
-        parser.expect(begin)?;
-        self.documented(&head.documentation, text, &head.first);
-        for [text, field] in FIELDS {
-            let place = parser.peek();
-            self.documented(&parser.documentation()?, text, &place);
+        parser.expect(STRUCT)?;
+        for field in FIELDS {
+            parser.documentation()?;
             parser.expect(field)?;
         }
         parser.expect("}")?;
@@ -330,12 +264,6 @@ impl<'a> Items<'a> {
             found.ok_or_else(|| name.fault(format!("{} is not a function that an emitted module has", name.shown())))?;
         let public = if promise.has_form_into() { "pub " } else { "" };
         parser.expect(&format!("{ALL_LINTS} {public}fn {}", name.text))?;
-        let names: Vec<String> = results.iter().map(|(name, _)| format!("`{name}`")).collect();
-        let listed = match names.split_last() {
-            Some((last, others)) if !others.is_empty() => format!("{} and {last}", others.join(", ")),
-            _ => names.concat(),
-        };
-        self.documented(&head.documentation, &format!("As [`{whole}`], written to {listed}: every entry."), &head.first);
         let results = results.into_iter().map(|(name, of)| format!("{name}:&mut{of}"));
         let all: Vec<String> = promise.typed(with).into_iter().chain(results).collect();
         signature(parser, &format!("({})", all.join(",")))?;
@@ -376,13 +304,11 @@ impl<'a> Items<'a> {
 
 /// The first tokens of an item.
 struct Head<'a> {
-    /// Where its documentation begins.
+    /// Where it begins, behind its documentation.
     beginning: Parser<'a>,
-    /// Its first token behind documentation and attributes.
-    first: Token<'a>,
     keyword: Token<'a>,
     name: Token<'a>,
-    /// Lines of its documentation; none of a private item.
+    /// Lines of its documentation.
     documentation: Vec<&'a str>,
 }
 

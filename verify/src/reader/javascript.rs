@@ -11,7 +11,7 @@
 
 use std::collections::BTreeMap;
 
-use armgen_codegen::emit::Language;
+use armgen_description::language::Language;
 
 use super::plain::{camel, names_of, promised, sizes, Body, Comments, Constants, Functions, Lines, Parts, Syntax, CONSTANTS};
 use super::{Constant, Fault, Function, Module};
@@ -19,16 +19,13 @@ use crate::contract::{Length, Returned, Sizes};
 use crate::enclosure::Float;
 use crate::program::Argument;
 
-pub(super) const COMMENTS: Comments = Comments { line: Some("//"), block: Some(("/**", "*/")) };
+pub(super) const COMMENTS: Comments = Comments { line: Some("//"), block: Some(("/**", "*/")), behind: "" };
 
 const CHECK: &str = include_str!("javascript/check.mjs");
 const SIGN: &str = include_str!("javascript/sign.mjs");
 const STRIBECK: &str = include_str!("javascript/stribeck.mjs");
 const STD: &str = include_str!("javascript/std.mjs");
 const FAST: &str = include_str!("javascript/sines.mjs");
-
-/// Texts that are the same in every module.
-pub(super) const FIXED: [&str; 5] = [CHECK, SIGN, STRIBECK, STD, FAST];
 
 fn comment(lines: &[&str]) -> Vec<String> {
     lines.iter().map(|line| line.strip_prefix(" *").unwrap_or(line).to_string()).filter(|line| !line.is_empty()).collect()
@@ -211,15 +208,12 @@ impl<'a> Reader<'a, '_> {
 
     /// The head of a part; its lines are read where it is called.
     fn part(&mut self, lines: &mut Lines<'a>) -> Result<(), Fault> {
-        let head = lines.at;
         let line = lines.number();
         let (name, arguments) = lines.between("function ", ") {")?.split_once('(').unwrap_or_default();
         let mut arguments: Vec<&str> = arguments.split(", ").collect();
         if arguments.pop() != Some("taken") {
             return Err(Fault { line, reason: "a part takes values, as its last argument".into() });
         }
-        let (function, number) = name.rsplit_once("Part").unwrap_or_default();
-        lines.commented(head, &[&format!(" Part {number} of `{function}`. ")])?;
         let body = lines.at;
         while !lines.is("}") {
             if lines.ended() {

@@ -6,7 +6,7 @@
 
 use std::fmt;
 
-pub(crate) use armgen_codegen::source::is_hidden;
+pub(crate) use armgen_description::source::is_hidden;
 
 use crate::check::Check;
 

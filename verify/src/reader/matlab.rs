@@ -14,7 +14,7 @@
 
 use std::collections::BTreeMap;
 
-use armgen_codegen::emit::Language;
+use armgen_description::language::Language;
 
 use super::plain::{camel, names_of, promised, sizes, Body, Comments, Constants, Entry, Lines, Parts, Syntax, CONSTANTS};
 use super::{Constant, Fault, Function, Module, LONGEST};
@@ -22,17 +22,13 @@ use crate::contract::{Array, Length, Promise, Sizes};
 use crate::enclosure::Float;
 use crate::program::{Argument, Program};
 
-pub(super) const COMMENTS: Comments = Comments { line: Some("%"), block: None };
+pub(super) const COMMENTS: Comments = Comments { line: Some("%"), block: None, behind: "" };
 
 const CHECK: &str = include_str!("matlab/check.m");
 const SIGN: &str = include_str!("matlab/sign.m");
 const STRIBECK: &str = include_str!("matlab/stribeck.m");
 const STD: &str = include_str!("matlab/std.m");
 const FAST: &str = include_str!("matlab/sines.m");
-
-/// Texts that are the same in every module.
-pub(super) const FIXED: [&str; 6] = [CHECK, SIGN, STRIBECK, STD, FAST, MODEL];
-const MODEL: &str = "function m = model()\n%MODEL  Names, limits and parameters, as fields of a struct.\n    m = struct();\n";
 
 /// What the line in front of a file begins with, behind which its name stands.
 pub(super) const FILE: &str = "%%% ";
@@ -158,7 +154,6 @@ fn constants(lines: &mut Lines<'_>) -> Result<BTreeMap<String, Constant>, Fault>
         truth: ["false", "true"],
         infinity: "Inf",
     };
-    lines.commented_as(MODEL, COMMENTS)?;
     lines.expect("function m = model()")?;
     lines.expect("    m = struct();")?;
     let mut constants = BTreeMap::new();
@@ -394,8 +389,6 @@ fn part<'a>(parts: &mut Parts<'a>, lines: &mut Lines<'a>) -> Result<(), Fault> {
     if arguments.pop() != Some("taken") {
         return Err(Fault { line, reason: "a part takes values, as its last argument".into() });
     }
-    let (function, part) = name.rsplit_once("Part").unwrap_or_default();
-    lines.commented(lines.at, &[&format!(" Part {part} of `{function}`.")])?;
     let body = lines.at;
     while !lines.is("end") {
         if lines.ended() {

@@ -42,13 +42,16 @@ impl<'a> Parser<'a> {
         Ok(found)
     }
 
-    /// Takes the tokens of a text, which must stand here.
+    /// Takes the tokens of a text, which must stand here, but for documentation.
     pub(super) fn expect(&mut self, text: &str) -> Result<(), Fault> {
         let mut wanted = Lexer::new(text);
         loop {
             let want = wanted.next()?;
             if want.kind == Kind::End {
                 return Ok(());
+            }
+            if want.kind == Kind::Documentation {
+                continue;
             }
             let mut found = self.token;
             while !Check::Tokens.is_made() && found.kind != Kind::End && found.text != want.text {

@@ -12,7 +12,7 @@
 
 use std::collections::BTreeMap;
 
-use armgen_codegen::emit::Language;
+use armgen_description::language::Language;
 
 use super::plain::{names_of, promised, sizes, Body, Comments, Constants, Functions, Lines, Parts, Syntax, CONSTANTS};
 use super::{Constant, Fault, Function, Module};
@@ -20,7 +20,7 @@ use crate::contract::{Length, Promise, Returned, Sizes};
 use crate::enclosure::Float;
 use crate::program::Argument;
 
-pub(super) const COMMENTS: Comments = Comments { line: Some("#"), block: Some(("    \"\"\"", "\"\"\"")) };
+pub(super) const COMMENTS: Comments = Comments { line: Some("#"), block: Some(("    \"\"\"", "\"\"\"")), behind: ":" };
 
 const ARRAYS: &str = include_str!("python/arrays.py");
 const SIGN: &str = include_str!("python/sign.py");
@@ -28,10 +28,6 @@ const STRIBECK: &str = include_str!("python/stribeck.py");
 const STD: &str = include_str!("python/std.py");
 const FAST_F64: &str = include_str!("python/sines_f64.py");
 const FAST_F32: &str = include_str!("python/sines_f32.py");
-
-/// Texts that are the same in every module.
-pub(super) const FIXED: [&str; 7] = [ARRAYS, SIGN, STRIBECK, STD, FAST_F64, FAST_F32, DTYPE];
-const DTYPE: &str = "# The type of the entries of all arrays.\nDTYPE: Final = \n";
 
 fn tuple(entries: &[String]) -> String {
     match entries {
@@ -94,7 +90,6 @@ pub(super) fn read(text: &str) -> Result<Module, Fault> {
     }
     let sizes = sizes(&constants)?;
     lines.at += 1;
-    lines.commented_as(DTYPE, COMMENTS)?;
     lines.expect_all(ARRAYS, COMMENTS)?;
     let mut trig = None;
     for (block, name) in [(if real == Float::F64 { FAST_F64 } else { FAST_F32 }, "fast"), (STD, "std")] {
@@ -259,7 +254,6 @@ impl<'a> Reader<'a, '_> {
         let promise =
             names_of().filter_map(|own| promised(&own)).find(|(promise, _)| structure(promise).as_deref() == Some(name));
         let (promise, _) = promise.ok_or_else(|| lines.fault(format!("`{name}` is no type of results")))?;
-        lines.commented(lines.at, &[&format!("Results of `{}`.", promise.name)])?;
         for (field, _) in promise.returned.named() {
             lines.expect(&format!("    {field}: Any"))?;
         }

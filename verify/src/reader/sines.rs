@@ -11,16 +11,12 @@ use super::parser::Parser;
 use crate::check::Check;
 use crate::enclosure::Float;
 
-const OF_LIBM_F64: &str =
-    "/// Sine and cosine of an angle in rad.\n#[inline]\nfn sin_cos(x: Real) -> (Real, Real) {\n    libm::sincos(x)\n}";
-const OF_LIBM_F32: &str =
-    "/// Sine and cosine of an angle in rad.\n#[inline]\nfn sin_cos(x: Real) -> (Real, Real) {\n    libm::sincosf(x)\n}";
-const OF_STD: &str =
-    "/// Sine and cosine of an angle in rad.\n#[inline]\nfn sin_cos(x: Real) -> (Real, Real) {\n    x.sin_cos()\n}";
-const SIGN: &str = "/// Sign of a rate: 0 at rest, not a number for what is not a number.\n#[inline]\n\
+const OF_LIBM_F64: &str = "#[inline]\nfn sin_cos(x: Real) -> (Real, Real) {\n    libm::sincos(x)\n}";
+const OF_LIBM_F32: &str = "#[inline]\nfn sin_cos(x: Real) -> (Real, Real) {\n    libm::sincosf(x)\n}";
+const OF_STD: &str = "#[inline]\nfn sin_cos(x: Real) -> (Real, Real) {\n    x.sin_cos()\n}";
+const SIGN: &str = "#[inline]\n\
     fn sign(x: Real) -> Real {\n    if x > 0.0 { 1.0 } else if x < 0.0 { -1.0 } else { x }\n}";
-const BARRIER: &str = "/// Between two columns: where there are vectors a compiler would take entries of several columns together, and hold too \
-    many values for that.\n#[inline]\nfn barrier() {\n    if cfg!(any(target_feature = \"sse2\", target_feature = \"neon\", \
+const BARRIER: &str = "#[inline]\nfn barrier() {\n    if cfg!(any(target_feature = \"sse2\", target_feature = \"neon\", \
     target_feature = \"simd128\")) {\n        core::sync::atomic::compiler_fence(core::sync::atomic::Ordering::SeqCst);\n    }\n}";
 const STRIBECK: &str = include_str!("sines/stribeck.rs");
 const FAST_F64: &str = include_str!("sines/fast_f64.rs");
@@ -55,7 +51,7 @@ pub(super) const NAMES: [&str; 22] = [
 /// What every module with the fast sines has, and no other.
 const OF_FAST: &str = "SIN_COS_RANGE";
 
-/// Private items by name, each at its documentation.
+/// Private items by name, each behind its documentation.
 pub(super) type Private<'a> = BTreeMap<&'a str, Parser<'a>>;
 
 /// The texts of the items of a block by their names.
@@ -141,10 +137,10 @@ fn words(text: &'static str) -> Result<BTreeSet<&'static str>, Fault> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use armgen_codegen::kinds::Scalar;
     use armgen_codegen::program::Trig;
     use armgen_codegen::schedule::Options;
-    use armgen_codegen::source::Source;
+    use armgen_description::kinds::Scalar;
+    use armgen_description::source::Source;
 
     /// Where this fails, the generator's block has changed: decide whether the new one is right, then copy it. One arm has the functions for four
     /// angles, for one and for a sine alone, the other those for eight.

@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use armgen_codegen::kinds::JointKind;
+use armgen_description::kinds::JointKind;
 
 use crate::checker::Checker;
 use crate::enclosure::Float;

@@ -2,7 +2,7 @@
 
 use std::fmt::Write;
 
-use armgen_codegen::emit::{Language, Origin};
+use armgen_description::{language::Language, origin::Origin};
 
 use super::{list, Kit, Value};
 use crate::contract::Length;

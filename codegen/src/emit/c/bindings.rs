@@ -7,8 +7,8 @@ use proc_macro2::TokenStream;
 
 use super::{prefix, returns_a_number};
 use crate::catalogue::{Length, Quantity};
-use crate::emit::origin::Origin;
 use crate::emit::rust::{self, written};
+use crate::emit::Origin;
 use crate::program::{Function, Module};
 
 /// An output of a function: its name in C, what Rust writes after the result to have it, and its dimensions, outermost first.

@@ -5,8 +5,8 @@ use std::fmt::Write;
 use super::{prefix, returns_a_number};
 use crate::catalogue::{Absent, Length};
 use crate::emit::documentation::{self, Block, Described, DescribedParameters, Link};
-use crate::emit::origin::Origin;
 use crate::emit::plain::of_robot;
+use crate::emit::Origin;
 use crate::exact::Number;
 use crate::kinds::Scalar;
 use crate::program::listing::decimal;
@@ -39,7 +39,7 @@ pub(super) fn link<'a>(name: &'a str, upper: &'a str) -> impl Fn(Link<'_>) -> St
 /// The beginning of both headers: where it came from, what it lacks, and the guard.
 pub(super) fn opening(origin: &Origin, notes: &[String], absent: &[Absent], upper: &str) -> String {
     let absent = absent.iter().map(|absent| format!("There is no `{}`: {}.", absent.function, absent.reason));
-    let head = origin.head(notes).into_iter().chain(absent).collect();
+    let head = crate::emit::head::lines(origin, notes).into_iter().chain(absent).collect();
     let head = comment(&[Block::Verbatim(head)], &|_| String::new());
     let guard = format!("ARMGEN_{upper}_H");
     format!("{head}#ifndef {guard}\n#define {guard}\n\n")

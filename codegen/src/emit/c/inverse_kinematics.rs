@@ -5,8 +5,8 @@
 use super::header::{comment, macros_of};
 use super::{prefix, CFace};
 use crate::emit::documentation::Block;
-use crate::emit::origin::Origin;
 use crate::emit::rust;
+use crate::emit::Origin;
 use crate::inverse_kinematics::{InverseKinematics, Target};
 use crate::kinds::Scalar;
 use crate::program::Module;
@@ -62,7 +62,10 @@ fn header(module: &Module, found: &InverseKinematics, origin: &Origin) -> String
 /// Where the header came from, what it is of, and its guard.
 pub(super) fn opening(names: &Names, found: &InverseKinematics, origin: &Origin) -> String {
     let upper = &names.upper;
-    let text = said(&origin.head(&[format!("Inverse kinematics: {}; at most {} solutions.", found.class, found.most)]));
+    let text = said(&crate::emit::head::lines(
+        origin,
+        &[format!("Inverse kinematics: {}; at most {} solutions.", found.class, found.most)],
+    ));
     // No name of a robot makes a guard of this end: that of a header of functions ends in `_H`.
     let guard = format!("ARMGEN_{upper}_INVERSE_KINEMATICS");
     text + &format!("#ifndef {guard}\n#define {guard}\n\n")

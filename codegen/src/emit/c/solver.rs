@@ -6,9 +6,9 @@
 use super::from_rust::{translated, Translated};
 use super::inverse_kinematics::{functions, opening, said, types, Names};
 use super::standalone::{EPILOGUE, PROLOGUE};
-use crate::emit::origin::Origin;
 use crate::emit::plain::of_robot;
 use crate::emit::rust;
+use crate::emit::Origin;
 use crate::inverse_kinematics::InverseKinematics;
 use crate::kinds::Scalar;
 use crate::manipulator::Manipulator;
@@ -102,7 +102,9 @@ pub fn print(
 ) -> Result<String, String> {
     let found = match found {
         Ok(found) => found,
-        Err(reason) => return Ok(said(&origin.head(&[format!("There is no inverse kinematics: {reason}.")]))),
+        Err(reason) => {
+            return Ok(said(&crate::emit::head::lines(origin, &[format!("There is no inverse kinematics: {reason}.")])))
+        }
     };
     let names = Names::of(&manipulator.name, scalar, manipulator.joints.len());
     // Everything that is no caller's business has a longer name.

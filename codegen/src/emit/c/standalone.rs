@@ -8,12 +8,12 @@ use std::fmt::Write;
 use super::header::{function_comment, macros, macros_of, opening, signature, POINTERS};
 use super::syntax::{C, VECTOR};
 use super::{batch, prefix, returns_a_number};
-use crate::emit::origin::{Notes, Origin};
 use crate::emit::plain::{
     asks_for_exponentials, asks_for_signs, described, expression, of_robot, places, reads_an_argument, waves,
 };
 use crate::emit::private::filled;
 use crate::emit::rust::asks_for_sines;
+use crate::emit::{Notes, Origin};
 use crate::kinds::Scalar;
 use crate::program::listing::{BodyPart, Line, Listing, Name};
 use crate::program::{Function, Module, Trig};

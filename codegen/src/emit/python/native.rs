@@ -5,8 +5,8 @@ use std::fmt::Write;
 use super::{link, result_type, structure};
 use crate::emit::c;
 use crate::emit::documentation::{self, Block};
-use crate::emit::origin::{Notes, Origin};
 use crate::emit::plain::head;
+use crate::emit::{Notes, Origin};
 use crate::kinds::Scalar;
 use crate::program::Module;
 

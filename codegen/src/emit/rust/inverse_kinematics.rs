@@ -8,7 +8,7 @@ use super::literal::literal;
 use super::runtime::is_implemented;
 use super::signature::usize_literal;
 use super::{format, head};
-use crate::emit::origin::Origin;
+use crate::emit::Origin;
 use crate::inverse_kinematics::{Arrangement, Construction, Frame, InverseKinematics, Redundancy, Regional, Target};
 use crate::kinds::{JointKind, Scalar};
 use crate::manipulator::{Joint, Manipulator};

@@ -36,6 +36,8 @@ pub(in crate::reader) struct Comments {
     pub(in crate::reader) line: Option<&'static str>,
     /// What a longer comment begins and ends with.
     pub(in crate::reader) block: Option<(&'static str, &'static str)>,
+    /// How a line of code ends that a longer comment can stand behind: in Python it is a text, which is idle at the beginning of a block alone.
+    pub(in crate::reader) behind: &'static str,
 }
 
 impl<'a> Lines<'a> {
@@ -65,6 +67,10 @@ impl<'a> Lines<'a> {
                 return Err(Fault { line: number, reason });
             }
             let begins = comments.block.filter(|(begin, _)| open.is_none() && line.starts_with(begin));
+            let is_idle = all.last().is_some_and(|line: &Line<'_>| line.text.ends_with(comments.behind));
+            if begins.is_some() && !comments.behind.is_empty() && !is_idle && Check::Strings.is_made() {
+                return Err(Fault { line: number, reason: "a text that is no comment: no block begins in front of it".into() });
+            }
             if let Some((begin, end)) = open.or(begins) {
                 let rest = if open.is_none() { &line[begin.len()..] } else { line };
                 open = match rest.split_once(end) {
@@ -137,37 +143,10 @@ impl<'a> Lines<'a> {
         }
     }
 
-    /// Takes all lines of a text.
+    /// Takes all lines of code of a text.
     pub(in crate::reader) fn expect_all(&mut self, text: &str, comments: Comments) -> Result<(), Fault> {
         let lines = Lines::new(text, comments)?;
-        lines.all.iter().try_for_each(|line| {
-            self.commented(self.at, &line.comment)?;
-            self.expect(line.text)
-        })
-    }
-
-    /// That each comment of a text stands in front of a line that begins as the text goes on, where there is such a line.
-    pub(in crate::reader) fn commented_as(&self, text: &str, comments: Comments) -> Result<(), Fault> {
-        let is_word = |c: char| c.is_ascii_alphanumeric() || c == '_';
-        for wanted in Lines::new(text, comments)?.all {
-            let begins = |line: &Line<'_>| line.text.strip_prefix(wanted.text).is_some_and(|rest| !rest.starts_with(is_word));
-            let mut places = (0..self.all.len()).filter(|&at| begins(&self.all[at])).peekable();
-            let Some(&first) = places.peek() else { continue };
-            if places.all(|at| self.commented(at, &wanted.comment).is_err()) {
-                self.commented(first, &wanted.comment)?;
-            }
-        }
-        Ok(())
-    }
-
-    /// That a comment stands in front of a line of code; what else stands there is judged where all comments are.
-    pub(in crate::reader) fn commented(&self, at: usize, comment: &[&str]) -> Result<(), Fault> {
-        let Some(line) = self.all.get(at).filter(|_| Check::Comments.is_made()) else { return Ok(()) };
-        if comment.is_empty() || line.comment.windows(comment.len()).any(|found| found == comment) {
-            return Ok(());
-        }
-        let lost = comment.iter().find(|text| !line.comment.contains(text)).unwrap_or(&comment[0]).trim();
-        Err(Fault { line: line.number, reason: format!("the comment `{lost}` is not there, in front of `{}`", line.text.trim()) })
+        lines.all.iter().try_for_each(|line| self.expect(line.text))
     }
 
     /// Takes a line that begins and ends so; what stands between.

@@ -1,7 +1,6 @@
 //! The languages that modules are printed in.
 
 use crate::kinds::Scalar;
-use crate::program::Trig;
 
 /// A language.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]
@@ -66,14 +65,6 @@ impl Language {
         match self {
             Language::Rust | Language::C | Language::Python => &[Scalar::F64, Scalar::F32],
             Language::JavaScript | Language::Matlab => &[Scalar::F64],
-        }
-    }
-
-    /// Where its sines and cosines come from unless chosen otherwise.
-    pub fn trig(self) -> Trig {
-        match self {
-            Language::Rust => Trig::Libm,
-            Language::C | Language::JavaScript | Language::Python | Language::Matlab => Trig::Fast,
         }
     }
 }

@@ -1,0 +1,178 @@
+//! What needs generator and checker both. The generator proposes exact values of literals; the checker, which does not depend on it, decides.
+//!
+//! ```no_run
+//! # fn main() -> Result<(), Box<dyn std::error::Error>> {
+//! use armgen_codegen::source::Source;
+//! let source = Source::new("robot.yaml", std::fs::read_to_string("robot.yaml")?);
+//! let report = armgen_certify::verify(&source, &std::fs::read_to_string("robot.rs")?, None);
+//! println!("{report}");
+//! std::fs::write("robot.cert.json", armgen_verify::certificate::Certificate::of(&report).to_json())?;
+//! # Ok(())
+//! # }
+//! ```
+
+use armgen_codegen::diagnostic::{Colour, Diagnostics};
+use armgen_codegen::emit::c::print_solver;
+use armgen_codegen::emit::rust::print_inverse_kinematics;
+use armgen_codegen::emit::{Language, Notes, Origin};
+use armgen_codegen::inverse_kinematics as construction;
+use armgen_codegen::manipulator::Manipulator;
+use armgen_codegen::pass::{Pass, Passes};
+use armgen_codegen::schedule::Options;
+use armgen_codegen::source::Source;
+use armgen_codegen::{validate, Generated, Scalar};
+use armgen_verify::certificate::Certificate;
+use armgen_verify::checker::Effort;
+use armgen_verify::claims::Claims;
+use armgen_verify::enclosure::Float;
+use armgen_verify::inverse_kinematics::{self, Proposal, Values};
+use armgen_verify::reader::{Module, ModuleText};
+use armgen_verify::report::Report;
+use armgen_verify::{bounds, companion, hash, verify_with};
+
+/// Verifies the text of a module against the text of its description.
+///
+/// The exact values of literals come from `certificate` or, without one, from a run of the generator; the checker trusts neither. A certificate
+/// must equal the certificate of the report: each difference is a fault. Faults of the description are rendered into [`Report::faults`].
+pub fn verify<'a>(source: &Source, text: impl Into<ModuleText<'a>>, certificate: Option<&Certificate>) -> Report {
+    let text = text.into();
+    let refused = |fault: String| Report { faults: vec![fault], ..Report::of(hash(source.text()), hash(text.text)) };
+    let module = match Module::read(text) {
+        Ok(module) => module,
+        Err(fault) => return refused(fault.into()),
+    };
+    if let Err(faults) = valid(source) {
+        return refused(faults);
+    }
+    let Some(certificate) = certificate else { return verify_by_generator(source, text, &module) };
+    let report = armgen_verify::verify(source, text, certificate);
+    if !report.functions.is_empty() {
+        return report;
+    }
+    // The certificate does not fit the texts. Which function is wrong, if any, is worth knowing all the same.
+    let by_generator = verify_by_generator(source, text, &module);
+    let others: Vec<String> = report.faults.into_iter().filter(|fault| !by_generator.faults.contains(fault)).collect();
+    Report { faults: [by_generator.faults, others].concat(), ..by_generator }
+}
+
+/// Verifies a module that the generator has just made from a description.
+pub fn certify(source: &Source, generated: &Generated) -> Report {
+    certify_in(source, generated, Language::Rust)
+}
+
+/// The same for the module in a language.
+pub fn certify_in(source: &Source, generated: &Generated, language: Language) -> Report {
+    let text = generated.in_language(language);
+    let text = ModuleText { language, text: &text };
+    verify_with(source, text, Claims::from_numbers(&generated.constants), Effort::default())
+}
+
+/// That a value of a function can leave the scalar within the limits of the joints, with the place in the description.
+pub fn beyond_the_scalar(source: &Source, function: &str, scalar: Scalar) -> Diagnostics {
+    let (read, mut diagnostics) = validate::read_for(source, scalar);
+    if let Some((manipulator, places)) = read {
+        diagnostics = Diagnostics::default();
+        diagnostics.push(validate::values_leave_the_scalar(&manipulator, &places, scalar, function));
+    }
+    diagnostics
+}
+
+/// Puts the error bounds of all functions into the documentation of a generated module: see [`bounds`](mod@bounds).
+pub fn document_bounds(source: &Source, generated: &mut Generated) -> Result<(), String> {
+    let manipulator = valid(source)?;
+    let module = Module::read(&generated.module)?;
+    let found = bounds::of(&manipulator, &module, &Claims::from_numbers(&generated.constants));
+    let bounds::Notes { head, functions } = bounds::notes(&found);
+    generated.annotate(&Notes { head, functions });
+    Ok(())
+}
+
+/// The companion of a generated module, with a running error bound for each function: see [`companion`](mod@companion). `import` brings in the
+/// module's types: `use super::robot::*;`.
+pub fn companion(generated: &Generated, import: &str) -> Result<String, String> {
+    companion::companion(&Module::read(&generated.module)?, &Claims::from_numbers(&generated.constants), import)
+}
+
+/// The end of the companion where inverse kinematics is emitted too: see [`companion::of_inverse_kinematics`].
+pub fn companion_of_inverse_kinematics(generated: &Generated) -> Result<String, String> {
+    Ok(companion::of_inverse_kinematics(&Module::read(&generated.module)?))
+}
+
+/// Verifies the text of a module of inverse kinematics against the text of its description, with counts at so many rational poses.
+pub fn verify_inverse_kinematics(source: &Source, text: &str, poses: usize) -> inverse_kinematics::Report {
+    match valid(source) {
+        Ok(manipulator) => inverse_kinematics::verify(source, text, &proposal(source, &manipulator, text), poses),
+        Err(faults) => inverse_kinematics::Report {
+            input: hash(source.text()),
+            output: hash(text),
+            faults: vec![faults],
+            ..inverse_kinematics::Report::default()
+        },
+    }
+}
+
+/// The generator's exact values and texts of inverse kinematics, in the language and the scalar of a text.
+pub fn proposal(source: &Source, manipulator: &Manipulator, text: &str) -> Proposal {
+    let found = construction::of(manipulator);
+    let (scalar, origin) = (inverse_kinematics::scalar_of(text), Origin::of(source));
+    let c = inverse_kinematics::is_c(text).then(|| print_solver(manipulator, scalar, &found, &origin));
+    Proposal {
+        rust: print_inverse_kinematics(manipulator, scalar, &found, &origin),
+        c,
+        values: found.as_ref().map(values).map_err(Clone::clone),
+    }
+}
+
+/// The exact values of a construction, in the order of its text.
+fn values(found: &construction::InverseKinematics) -> Values {
+    let numbers = |way: &construction::Arrangement| {
+        let frames = way.links.iter().chain([&way.before, &way.after]).flatten().flatten();
+        frames.chain(way.offsets.iter().flatten()).cloned().collect()
+    };
+    let given = found.given().into_iter().flat_map(|given| [&given.before, &given.after]).flatten().flatten();
+    Values {
+        loops: found.loops().iter().map(numbers).collect(),
+        own: found.own.as_ref().map(numbers),
+        given: given.cloned().collect(),
+        length: found.length.clone(),
+    }
+}
+
+/// The arm of a description without a fault, else its faults in words.
+fn valid(source: &Source) -> Result<Manipulator, String> {
+    let (read, diagnostics) = validate::read(source);
+    read.map(|(manipulator, _)| manipulator).ok_or_else(|| diagnostics.render(source, Colour::Never))
+}
+
+/// Verifies with the constants of the generator. A module that lacks a pass has other constants: where the usual run does not explain some literal,
+/// runs without each pass are tried.
+fn verify_by_generator(source: &Source, text: ModuleText<'_>, module: &Module) -> Report {
+    let verify_without = |without: Passes| {
+        let claims = generated_claims(source, module.real, without);
+        let lacks = claims.lack(module);
+        (verify_with(source, text, claims, Effort::default()), lacks)
+    };
+    let (report, lacks) = verify_without(Passes::default());
+    if report.passed() || !lacks {
+        return report;
+    }
+    let of_pass = |pass: Pass| {
+        let mut without = Passes::default();
+        without.insert(pass);
+        without
+    };
+    let others = Pass::ALL.into_iter().map(of_pass).chain([Passes::all()]).map(verify_without);
+    others.map(|(report, _)| report).find(Report::passed).unwrap_or(report)
+}
+
+/// The constants of the generator for a scalar, without some passes.
+fn generated_claims(source: &Source, real: Float, without: Passes) -> Claims {
+    let scalar = match real {
+        Float::F32 => Scalar::F32,
+        Float::F64 => Scalar::F64,
+    };
+    #[allow(clippy::needless_update)]
+    let options = Options { scalar, without, ..Default::default() };
+    let (generated, _) = armgen_codegen::generate(source, &options);
+    generated.map_or(Claims::none(), |generated| Claims::from_numbers(&generated.constants))
+}
