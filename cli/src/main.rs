@@ -6,12 +6,14 @@
 //! lib.rs         arguments, dispatch
 //! commands/      one file per command
 //! file_names.rs  what the file of a module may be called
+//! hints.rs       what to type instead of arguments that do not exist
 //! input.rs       descriptions from files
 //! ```
 
 mod commands;
 mod companions;
 mod file_names;
+mod hints;
 mod input;
 
 use std::path::PathBuf;
@@ -19,10 +21,11 @@ use std::process::ExitCode;
 
 use armgen_codegen::emit::Language;
 use armgen_codegen::pass::Pass;
-use armgen_codegen::show::{Form, Style};
+use armgen_codegen::show::Form;
 use armgen_terminal::{self as terminal, output, table, DONE, FAULTY, UNREADABLE};
 use clap::builder::styling::{AnsiColor, Styles};
 use clap::builder::{PossibleValuesParser, TypedValueParser};
+use clap::error::ErrorKind;
 use clap::{Parser, Subcommand, ValueEnum, ValueHint};
 
 use commands::generate::{Beside, Choices};
@@ -64,7 +67,9 @@ enum Command {
     #[command(after_help = "Examples:
   armgen check robot.yaml
   armgen check robots/*.yaml
+  armgen check robot.yaml --full                  every table
   armgen check robot.yaml --strict --allow triangle-inequality
+  armgen check robot.yaml --format json           for programs (docs/robot-yaml.md)
 
 A file may allow kinds of warnings itself: `allow: [missing-inertia]`.
 The summary goes to standard output; errors and warnings go to standard error, each with
@@ -75,6 +80,12 @@ Exit codes: 0 valid (perhaps with warnings), 1 faulty (with --strict also: warni
         /// Descriptions of robot arms
         #[arg(required = true, value_name = "FILE", value_hint = ValueHint::FilePath)]
         files: Vec<PathBuf>,
+        /// Every table: limits, drives, inertias, frames, what can be identified
+        #[arg(long)]
+        full: bool,
+        /// Form of the output
+        #[arg(long, value_enum, default_value_t = CheckFormat::Text)]
+        format: CheckFormat,
         /// Fail on warnings
         #[arg(long)]
         strict: bool,
@@ -103,9 +114,9 @@ A QUANTITY is the name of an emitted function (`armgen count FILE` lists them), 
         /// Print the names of parameters instead of their values
         #[arg(long)]
         symbolic: bool,
-        /// Which form of the equations
-        #[arg(long, value_enum, default_value_t = ShowForm::Shortest)]
-        form: ShowForm,
+        /// Which form of the equations; `closed` for arms of up to four joints, else `shortest`, if not given
+        #[arg(long, value_enum)]
+        form: Option<ShowForm>,
         /// Constants as decimals of so many digits instead of exactly
         #[arg(long, value_name = "N", value_parser = clap::value_parser!(u8).range(1..=17))]
         digits: Option<u8>,
@@ -267,9 +278,9 @@ Exit codes: 0 done, 1 the description is faulty, 2 a file cannot be read or writ
         /// Description of the robot arm
         #[arg(value_name = "FILE", value_hint = ValueHint::FilePath)]
         file: PathBuf,
-        /// File to write
+        /// File to write; the name of the description with `.html` if not given
         #[arg(long, value_name = "PATH", value_hint = ValueHint::FilePath)]
-        out: PathBuf,
+        out: Option<PathBuf>,
         /// Log to be played on the arm, a CSV file of an experiment; may be given several times
         #[arg(long = "log", value_name = "CSV", value_hint = ValueHint::FilePath)]
         logs: Vec<PathBuf>,
@@ -302,14 +313,13 @@ enum ShowForm {
     Steps,
 }
 
-impl ShowForm {
-    fn style(self, digits: Option<u8>) -> Style {
-        let form = match self {
+impl From<ShowForm> for Form {
+    fn from(form: ShowForm) -> Form {
+        match form {
             ShowForm::Shortest => Form::Shortest,
             ShowForm::Closed => Form::Closed,
             ShowForm::Steps => Form::Steps,
-        };
-        Style { form, digits }
+        }
     }
 }
 
@@ -320,6 +330,14 @@ enum ShowFormat {
     /// For a document with amsmath
     Latex,
     /// For programs
+    Json,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+enum CheckFormat {
+    /// For a terminal
+    Text,
+    /// For programs: one object a line for each file
     Json,
 }
 
@@ -359,11 +377,32 @@ fn pass_parser() -> impl TypedValueParser<Value = Pass> {
 }
 
 fn main() -> ExitCode {
-    let arguments = Arguments::parse();
+    let arguments = match Arguments::try_parse() {
+        Ok(arguments) => arguments,
+        Err(refusal) => {
+            let given: Vec<String> = std::env::args().skip(1).collect();
+            let is_of_words =
+                matches!(refusal.kind(), ErrorKind::UnknownArgument | ErrorKind::InvalidSubcommand | ErrorKind::InvalidValue);
+            match hints::of(&given).filter(|_| is_of_words) {
+                Some(hint) => {
+                    terminal::error(&hint);
+                    return ExitCode::from(UNREADABLE);
+                }
+                None => refusal.exit(),
+            }
+        }
+    };
     let code = match arguments.command {
-        Command::Check { files, strict, allow } => commands::check::run(&files, &commands::check::Doubts { strict, allow }),
+        Command::Check { files, full, format, strict, allow } => {
+            let doubts = commands::check::Doubts { strict, allow };
+            match format {
+                CheckFormat::Text => commands::check::run(&files, &doubts, full),
+                CheckFormat::Json => commands::check::json::run(&files, &doubts),
+            }
+        }
         Command::Show { file, quantities, symbolic, form, digits, format } => {
-            commands::show::run(&file, &quantities, symbolic, form.style(digits), format)
+            let asked = commands::show::Asked { symbolic, form: form.map(Form::from), digits, format };
+            commands::show::run(&file, &quantities, &asked)
         }
         Command::Generate { file, out, choices, beside } => commands::generate::run(&file, out.as_deref(), &choices, &beside),
         Command::Import { file, choices, results } => import::run(&file, choices, &results),
@@ -371,7 +410,7 @@ fn main() -> ExitCode {
         Command::Export { file, format, out } => export::run(&file, format, out.as_ref()),
         Command::Verify { description, module, language } => commands::verify::run(&description, &module, language),
         Command::Count { file, format, functions, without, fma } => commands::count::run(&file, format, &functions, without, fma),
-        Command::Page { file, out, logs } => commands::page::run(&file, &out, &logs),
+        Command::Page { file, out, logs } => commands::page::run(&file, out, &logs),
         Command::Run { arguments: _ } => {
             terminal::error(
                 "no robot is compiled into armgen; in the folder of its sources, `cargo run --release -- run` builds the robot of robot.yaml and moves it",

@@ -2,6 +2,8 @@
 //!
 //! ```text
 //! Source -> document: tree of nodes -> reader.rs: which keys there are, and what stands under each -> RobotDescription
+//!                                     values.rs: every value, with its role and its dimension
+//!                                     units.rs:  the units that the file names, applied to them
 //! ```
 //!
 //! Absent from here on: YAML, unknown keys, wrong kinds of values, malformed expressions. What could not be read is `None`, and its
@@ -9,11 +11,25 @@
 
 mod other_formats;
 mod reader;
+mod units;
+mod values;
 
 use crate::diagnostic::Diagnostics;
-use crate::document::{yaml, Expression};
+use crate::document::{yaml, Expression, Unit};
 use crate::kinds::{JointKind, Target, TaskRow};
 use crate::source::{Source, Span, Spanned};
+pub use values::{Dimension, Role};
+
+/// A list of values as it stands in the file, or in SI units where the file names others.
+pub fn list_text<const N: usize>(list: &Spanned<[Value; N]>, source: &Source) -> String {
+    let converted = list.value.iter().flatten().any(|value| matches!(value.kind, crate::document::ExpressionKind::InUnit(..)));
+    if !converted {
+        return source.slice(list.span).to_owned();
+    }
+    let texts: Vec<String> =
+        list.value.iter().map(|value| value.as_ref().map_or(String::new(), |value| value.text(source))).collect();
+    format!("[{}]", texts.join(", "))
+}
 
 /// A value that may have been unreadable.
 pub type Value = Option<Expression>;
@@ -27,6 +43,10 @@ pub struct RobotDescription {
     pub convention: Option<Spanned<Convention>>,
     /// Acceleration of gravity in the base frame.
     pub gravity: Option<Spanned<[Value; 3]>>,
+    /// The units of plain numbers, those that the file names. The values are in SI units already.
+    pub units: Vec<NamedUnit>,
+    /// What products of inertia are. The values are elements of the tensor already.
+    pub products: Option<Spanned<Products>>,
     /// Named quantities.
     pub parameters: Vec<ParameterDescription>,
     /// Joints from base to tip; `None` if the key is missing or holds no list.
@@ -56,6 +76,26 @@ pub enum Convention {
     Modified,
     /// A_i = origin · motion about or along `axis`, as in a URDF.
     Urdf,
+}
+
+/// A unit that the file names for values of one kind.
+#[derive(Clone, Debug)]
+pub struct NamedUnit {
+    /// The key under `units`.
+    pub key: &'static str,
+    /// As it is written.
+    pub text: Spanned<String>,
+    /// What it is.
+    pub unit: Unit,
+}
+
+/// What the products of inertia of a file are.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Products {
+    /// Elements of the tensor: xy is -∫xy dm.
+    Tensor,
+    /// Integrals: xy is ∫xy dm.
+    Integral,
 }
 
 /// A named quantity.
@@ -271,7 +311,10 @@ impl RobotDescription {
     pub fn parse(source: &Source) -> (Option<RobotDescription>, Diagnostics) {
         let mut diagnostics = Diagnostics::new();
         let root = yaml::read(source, &mut diagnostics);
-        let description = reader::read(source, root.as_ref(), &mut diagnostics);
+        let mut description = reader::read(source, root.as_ref(), &mut diagnostics);
+        if let Some(description) = &mut description {
+            units::apply(description, &mut diagnostics);
+        }
         (description, diagnostics)
     }
 }

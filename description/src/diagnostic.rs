@@ -156,6 +156,14 @@ codes! {
         /// An expression whose exact value would grow too large to work with.
         TooComplex Error "too-complex",
 
+        // Units.
+        /// `units` names what is no unit of the key.
+        UnknownUnit Error "unknown-unit",
+        /// A plain number in the unit of the file beside an angle in radians.
+        MixedUnits Error "mixed-units",
+        /// `products` is neither `tensor` nor `integral`.
+        UnknownProducts Error "unknown-products",
+
         // Names.
         /// A name that is not an identifier.
         BadName Error "bad-name",
@@ -258,7 +266,13 @@ codes! {
         ImplausibleGravity Warning "implausible-gravity",
         /// A velocity limit beyond what joints reach.
         ImplausibleVelocity Warning "implausible-velocity",
-        /// An effort limit that friction alone takes.
+        /// An effort limit beyond any motor of the arm.
+        ImplausibleEffort Warning "implausible-effort",
+        /// Friction that would hold the arm still, or that fades where nothing creeps.
+        ImplausibleFriction Warning "implausible-friction",
+        /// An armature larger than the whole arm at its reach.
+        ImplausibleArmature Warning "implausible-armature",
+        /// An effort limit that friction or gravity alone takes.
         WeakEffort Warning "weak-effort",
         /// Friction that feeds energy in within the limits.
         ActiveFriction Warning "active-friction",
@@ -332,7 +346,7 @@ pub enum Colour {
 const RENDERED: usize = 500;
 
 /// Once the lines shown come to so many bytes, the rest is only counted: in a file that is one long line each diagnostic costs the whole of it.
-const RENDERED_BYTES: usize = 16 << 20;
+const RENDERED_BYTES: usize = 1 << 20;
 
 /// Diagnostics of one text.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]

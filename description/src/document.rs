@@ -12,7 +12,7 @@ pub mod reader;
 pub mod yaml;
 
 pub(crate) use expression::out_of_range;
-pub use expression::{multiple_of_pi, parse as parse_expression, Expression, ExpressionKind, Operator};
+pub use expression::{decimal_text, multiple_of_pi, parse as parse_expression, Expression, ExpressionKind, Operator, Unit};
 
 /// What a character is called that looks like a blank, or like nothing, and is no space of YAML.
 fn invisible(c: char) -> Option<String> {

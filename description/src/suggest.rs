@@ -22,6 +22,67 @@ pub fn did_you_mean<'w>(found: &str, words: &[&'w str]) -> Option<&'w str> {
     ranked.min_by_key(|(d, word)| (*d, letters(word) != own)).map(|(_, word)| word)
 }
 
+/// What Pinocchio, MuJoCo, the Robotics Toolbox and books call functions, and the names that they have here.
+const OTHER_WORDS: &[(&str, &str)] = &[
+    ("M", "inertia_matrix"),
+    ("B", "inertia_matrix"),
+    ("H", "inertia_matrix"),
+    ("D", "inertia_matrix"),
+    ("inertia", "inertia_matrix"),
+    ("mass_matrix", "inertia_matrix"),
+    ("full_mass_matrix", "inertia_matrix"),
+    ("crba", "inertia_matrix"),
+    ("mj_crb", "inertia_matrix"),
+    ("mj_fullM", "inertia_matrix"),
+    ("C", "coriolis_matrix"),
+    ("coriolis", "coriolis_matrix"),
+    ("compute_coriolis_matrix", "coriolis_matrix"),
+    ("computeCoriolisMatrix", "coriolis_matrix"),
+    ("g", "gravity"),
+    ("G", "gravity"),
+    ("gravload", "gravity"),
+    ("gravity_vector", "gravity"),
+    ("compute_generalized_gravity", "gravity"),
+    ("computeGeneralizedGravity", "gravity"),
+    ("J", "geometric_jacobian"),
+    ("jacobian", "geometric_jacobian"),
+    ("jacob0", "geometric_jacobian"),
+    ("mj_jac", "geometric_jacobian"),
+    ("get_frame_jacobian", "geometric_jacobian"),
+    ("getFrameJacobian", "geometric_jacobian"),
+    ("fk", "direct_kinematics"),
+    ("fkine", "direct_kinematics"),
+    ("forward_kinematics", "direct_kinematics"),
+    ("forwardKinematics", "direct_kinematics"),
+    ("mj_kinematics", "direct_kinematics"),
+    ("tau", "inverse_dynamics"),
+    ("rne", "inverse_dynamics"),
+    ("rnea", "inverse_dynamics"),
+    ("mj_rne", "inverse_dynamics"),
+    ("mj_inverse", "inverse_dynamics"),
+    ("id", "inverse_dynamics"),
+    ("aba", "forward_dynamics"),
+    ("accel", "forward_dynamics"),
+    ("fd", "forward_dynamics"),
+    ("mj_forward", "forward_dynamics"),
+    ("ik", "inverse_kinematics"),
+    ("ikine", "inverse_kinematics"),
+    ("Y", "regressor"),
+    ("det", "determinant"),
+];
+
+/// The one of `words` that other programs and books call `found`; else the one that it was probably meant to be.
+pub fn function_meant<'w>(found: &str, words: &[&'w str]) -> Option<&'w str> {
+    let plain = found.strip_suffix("_with").unwrap_or(found);
+    // Letters stand for other functions as capitals.
+    let of_others = OTHER_WORDS
+        .iter()
+        .find(|(other, _)| *other == plain)
+        .or_else(|| OTHER_WORDS.iter().find(|(other, _)| other.len() > 1 && other.eq_ignore_ascii_case(plain)))
+        .and_then(|(_, name)| words.iter().copied().find(|word| word == name));
+    of_others.or_else(|| did_you_mean(found, words))
+}
+
 /// Least number of letters to insert, remove, replace or swap with their neighbour.
 fn distance(a: &[char], b: &[char]) -> usize {
     let mut rows: Vec<Vec<usize>> = vec![(0..=b.len()).collect()];
@@ -42,7 +103,43 @@ fn distance(a: &[char], b: &[char]) -> usize {
 
 #[cfg(test)]
 mod tests {
-    use super::did_you_mean;
+    use super::{did_you_mean, function_meant};
+
+    #[test]
+    fn words_of_other_programs_are_known() {
+        let words = [
+            "direct_kinematics",
+            "inverse_dynamics",
+            "forward_dynamics",
+            "inertia_matrix",
+            "coriolis_matrix",
+            "gravity",
+            "geometric_jacobian",
+        ];
+        let check = |found: &str, meant: &str| assert_eq!(function_meant(found, &words), Some(meant), "{found}");
+        for (found, meant) in [
+            ("forward_kinematics", "direct_kinematics"),
+            ("fk", "direct_kinematics"),
+            ("fkine", "direct_kinematics"),
+            ("M", "inertia_matrix"),
+            ("B", "inertia_matrix"),
+            ("mass_matrix", "inertia_matrix"),
+            ("crba", "inertia_matrix"),
+            ("inertia", "inertia_matrix"),
+            ("C", "coriolis_matrix"),
+            ("g", "gravity"),
+            ("J", "geometric_jacobian"),
+            ("jacob0", "geometric_jacobian"),
+            ("jacobian", "geometric_jacobian"),
+            ("rnea", "inverse_dynamics"),
+            ("aba", "forward_dynamics"),
+            ("RNEA", "inverse_dynamics"),
+            ("gravty", "gravity"),
+        ] {
+            check(found, meant);
+        }
+        assert_eq!(function_meant("xyzzy", &words), None);
+    }
 
     #[track_caller]
     fn check(found: &str, meant: Option<&str>) {

@@ -53,6 +53,9 @@ pub use plausible::{density_of_cuboid, doubt_of_density};
 /// Most named quantities: more than all numbers of an arm with `MAX_JOINTS` joints.
 pub const MAX_PARAMETERS: usize = 1024;
 
+/// Most attached bodies of an arm: their exact tensors grow with every angle that is no multiple of pi/12.
+pub const MAX_ATTACHED: usize = 256;
+
 /// What a description holds before anybody derives its equations.
 pub struct Structure {
     /// The arm and the places of its parts; none if a part of it could not be read.
@@ -160,6 +163,7 @@ fn validate(
         // There are no torques that a regressor could be of.
         manipulator.regressor = RegressorChoice::Names(Vec::new());
     }
+    plausible::check_holding(description, &manipulator, &mut context);
     Some((manipulator, places))
 }
 
@@ -175,6 +179,14 @@ fn joints(description: &RobotDescription, context: &mut Context<'_>) -> Option<V
         let message = format!("{} joints are more than the {MAX_JOINTS} that can be generated", list.value.len());
         let help = "leave joints out that never move: they are parts of their links";
         context.report(Code::TooManyJoints, joint.span, message, format!("joint {}", MAX_JOINTS + 1), help);
+        return None;
+    }
+    let attached = list.value.iter().filter_map(|joint| joint.link.as_ref()).flat_map(|link| &link.attached);
+    if let Some(body) = attached.clone().nth(MAX_ATTACHED) {
+        let message =
+            format!("{} attached bodies are more than the {MAX_ATTACHED} of an arm: each is placed exactly", attached.count());
+        let help = "write bodies that never move to each other as one, or leave out those too light to matter";
+        context.report(Code::TooLarge, body.body.key, message, format!("body {}", MAX_ATTACHED + 1), help);
         return None;
     }
     let convention = description.convention.as_ref().map(|c| c.value);

@@ -158,6 +158,9 @@ impl<'d> Converter<'d> {
                 frozen.join(", ")
             ));
         }
+        if !description.units.is_empty() || description.products.is_some() {
+            self.lines.push("values are in SI units, and products of inertia are elements of the tensor".into());
+        }
         if self.writer.rounded > 0 {
             self.lines
                 .push(format!("{} numbers are rounded to 17 digits: no short expression is equal to them", self.writer.rounded));
@@ -449,6 +452,8 @@ impl<'d> Converter<'d> {
             name: _,
             convention: _,
             gravity: _,
+            units: _,
+            products: _,
             parameters: _,
             joints: _,
             base: _,
@@ -494,9 +499,9 @@ impl<'d> Converter<'d> {
             && inverse_kinematics::of(self.arm).is_ok_and(|found| matches!(found.redundancy, Some(Redundancy::Swivel)))
     }
 
-    /// The expression as it is written.
+    /// The expression as it is written, or in SI units where the file names others.
     fn text(&self, expression: &Expression) -> String {
-        self.written(expression.span)
+        expression.text(self.source).split_whitespace().collect::<Vec<_>>().join(" ")
     }
 
     /// A scalar as it is written, without quotes.

@@ -405,6 +405,8 @@ impl Writer<'_> {
             name: _,
             convention: _,
             gravity,
+            units: _,
+            products: _,
             parameters,
             joints: _,
             base: _,

@@ -3,12 +3,12 @@
 use std::fmt::Write;
 
 use armgen_codegen::derive::parameters::nominal;
-use armgen_codegen::description::{JointDescription, RobotDescription};
+use armgen_codegen::description::{list_text, JointDescription, RobotDescription};
 use armgen_codegen::document::Expression;
 use armgen_codegen::exact::{Number, Polynomial};
 use armgen_codegen::kinds::JointKind;
 use armgen_codegen::manipulator::{Joint, Manipulator};
-use armgen_codegen::source::{Source, Span};
+use armgen_codegen::source::Source;
 
 use crate::html::{decimal, escape, sentence};
 
@@ -37,11 +37,11 @@ fn columns(source: &Source, manipulator: &Manipulator, joints: &[(&Joint, &Joint
     let exact = |of: Option<&Number>| of.map(Number::to_f64);
     let of = |of: Option<&Polynomial>| of.map(|of| nominal(manipulator, of).to_f64());
     let cell = |written: Written, number: Option<f64>| {
-        let written = written.map(|value| source.slice(value.span).to_string())?;
+        let written = written?.text(source);
         Some(Cell { written, number })
     };
-    let text = |spans: [Option<Span>; 2]| {
-        let words: Vec<&str> = spans.into_iter().flatten().map(|span| source.slice(span)).collect();
+    let text = |lists: [Option<String>; 2]| {
+        let words: Vec<String> = lists.into_iter().flatten().collect();
         (!words.is_empty()).then(|| Cell { written: words.join(", axis "), number: None })
     };
     let column = |title, units, cell: &dyn Fn(&Joint, &JointDescription) -> Option<Cell>| Column {
@@ -61,7 +61,7 @@ fn columns(source: &Source, manipulator: &Manipulator, joints: &[(&Joint, &Joint
         motor("mass of the rotor", ["kg"; 2], &|m| of(Some(&m.mass)), |row| row.motor.as_ref()?.mass.as_ref()),
         column("place of the rotor", [""; 2], &|_, row| {
             let motor = row.motor.as_ref()?;
-            text([motor.position.as_ref().map(|at| at.span), motor.axis.as_ref().map(|axis| axis.span)])
+            text([&motor.position, &motor.axis].map(|list| list.as_ref().map(|list| list_text(list, source))))
         }),
         motor("viscous at the rotor", ["N m s"; 2], &|m| of(m.viscous.as_ref()), |row| row.motor.as_ref()?.viscous.as_ref()),
         column("viscous friction", ["N m s", "N s/m"], &|j, row| cell(row.friction.viscous.as_ref(), of(j.viscous.as_ref()))),

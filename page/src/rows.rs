@@ -2,7 +2,7 @@
 
 use armgen_codegen::derive::parameters::{denavit_hartenberg, nominal};
 use armgen_codegen::description::{
-    Convention, JointDescription, PoseDescription, PoseElement, RobotDescription, RotationDescription,
+    list_text, Convention, JointDescription, PoseDescription, PoseElement, RobotDescription, RotationDescription,
 };
 use armgen_codegen::document::Expression;
 use armgen_codegen::kinds::JointKind;
@@ -87,7 +87,7 @@ fn row(
 ) -> Row {
     let frames = |elements: &[Placement]| -> Vec<Frame> { elements.iter().map(|e| frame(manipulator, e)).collect() };
     let before = &joint.row.before.elements[skip..];
-    let text = |value: &Option<Expression>| value.as_ref().map_or(String::new(), |v| source.slice(v.span).to_string());
+    let text = |value: &Option<Expression>| value.as_ref().map_or(String::new(), |v| v.text(source));
     let numbers = match convention {
         Convention::Standard | Convention::Modified => {
             denavit_hartenberg(manipulator, &joint.row, convention == Convention::Modified)
@@ -110,7 +110,7 @@ fn row(
         axis: joint.row.axis.each_ref().map(armgen_codegen::exact::Number::to_f64),
         after: frames(&joint.row.after.elements),
         limits: joint.limits.position.as_ref().map(|limits| limits.each_ref().map(armgen_codegen::exact::Number::to_f64)),
-        limits_written: written.limits.position.as_ref().map_or(String::new(), |limits| source.slice(limits.span).to_string()),
+        limits_written: written.limits.position.as_ref().map_or(String::new(), |limits| list_text(limits, source)),
         line: source.place(written.span.start).line,
     }
 }
@@ -118,15 +118,15 @@ fn row(
 /// A pose as it is written, on one line: translations, and rotations with the key that they are written under.
 fn pose_text(source: &Source, pose: Option<&PoseDescription>) -> String {
     let rotation = |rotation: &RotationDescription| match rotation {
-        RotationDescription::Rpy(rpy) => format!("rpy {}", source.slice(rpy.span)),
+        RotationDescription::Rpy(rpy) => format!("rpy {}", list_text(rpy, source)),
         RotationDescription::Quat(quat) => format!("quat {}", source.slice(quat.span)),
         RotationDescription::AxisAngle(axis, angle) => {
-            format!("axis {} angle {}", source.slice(axis.span), source.slice(angle.span))
+            format!("axis {} angle {}", source.slice(axis.span), angle.text(source))
         }
         RotationDescription::XyAxes(axes) => format!("xyaxes {}", source.slice(axes.span)),
     };
     let element = |element: &PoseElement| {
-        let xyz = element.xyz.as_ref().map(|xyz| source.slice(xyz.span).to_string());
+        let xyz = element.xyz.as_ref().map(|xyz| list_text(xyz, source));
         xyz.into_iter().chain(element.rotation.as_ref().map(rotation)).collect::<Vec<_>>()
     };
     pose.into_iter().flat_map(|pose| &pose.elements).flat_map(element).collect::<Vec<_>>().join(", ")

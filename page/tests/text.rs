@@ -18,6 +18,26 @@ fn the_same_text_gives_the_same_bytes_wherever_it_lies() {
     assert_eq!(page("a/arm.yaml", ARM), page("/b/c/arm.yaml", ARM));
 }
 
+/// A cell that a rule makes a block leaves its column: every rule that does so names the element that it means.
+#[test]
+fn no_rule_of_the_style_takes_a_cell_out_of_its_column() {
+    let page = page("arm.yaml", ARM);
+    let style = page.split("<style>").nth(1).and_then(|rest| rest.split("</style>").next()).expect("a style");
+    let mut blocks = 0;
+    for rule in style
+        .split('}')
+        .filter(|rule| rule.replace(' ', "").contains("display:block") || rule.replace(' ', "").contains("display:grid"))
+    {
+        let selectors = rule.rsplit_once('{').map_or("", |(selectors, _)| selectors);
+        for selector in selectors.split(',').map(str::trim).filter(|selector| selector.contains(".written")) {
+            blocks += 1;
+            assert!(selector.contains("span.written"), "`{selector}` makes cells of tables blocks");
+        }
+    }
+    assert!(blocks > 0, "no rule is looked at");
+    assert!(page.contains("<span class=\"written\">"));
+}
+
 /// What plays logs and draws curves is a fifth of a small page.
 #[test]
 fn a_page_without_logs_has_nothing_that_plays_them() {

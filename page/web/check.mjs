@@ -70,8 +70,8 @@ export function check(data, state, picture) {
         const arm = asWritten(data);
         measured.forEach((one, k) => {
             const { position, angle } = apart(arm, one);
-            const turned = one.frame ? ` and ${withUnit(angle, "rad")}` : "";
-            said.append(html("p", {}, `pose ${k + 1}: ${withUnit(position, "m")}${turned} from the arm of the page`));
+            const turned = one.frame ? ` and ${withUnit(tidy(angle), "rad")}` : "";
+            said.append(html("p", {}, `pose ${k + 1}: ${withUnit(tidy(position), "m")}${turned} from the arm of the page`));
         });
         const { before, suspects } = explain(data, measured, picture.arm.size);
         if (before < 1e-3 * picture.arm.size) {

@@ -3,12 +3,13 @@
 mod bodies;
 mod identification;
 mod joints;
+pub(crate) mod json;
 mod posture;
 mod reach;
 
 use std::path::{Path, PathBuf};
 
-use armgen_codegen::description::{Convention, RobotDescription};
+use armgen_codegen::description::{Convention, Products, RobotDescription};
 use armgen_codegen::diagnostic::Diagnostics;
 use armgen_codegen::exact::{Number, Polynomial};
 use armgen_codegen::kinds::Scalar;
@@ -24,10 +25,10 @@ use crate::{input, terminal, DONE, FAULTY};
 use super::verify::with_spinner;
 
 /// Checks every file; the exit code is the worst of them.
-pub(crate) fn run(files: &[PathBuf], doubts: &Doubts) -> u8 {
+pub(crate) fn run(files: &[PathBuf], doubts: &Doubts, full: bool) -> u8 {
     let mut worst = DONE;
     for (i, file) in files.iter().enumerate() {
-        let code = match checked(file, doubts) {
+        let code = match checked(file, doubts, full) {
             Ok((summary, code)) => code.max(terminal::print(&if i > 0 { format!("\n{summary}") } else { summary })),
             Err(code) => code,
         };
@@ -46,7 +47,7 @@ pub(crate) struct Doubts {
 }
 
 /// The summary, and the exit code.
-fn checked(file: &Path, doubts: &Doubts) -> Result<(String, u8), u8> {
+fn checked(file: &Path, doubts: &Doubts, full: bool) -> Result<(String, u8), u8> {
     let source = input::source(file)?;
     let (valid, mut diagnostics) = validate::read_for(&source, Scalar::F64);
     diagnostics.allow(&doubts.allow);
@@ -55,7 +56,7 @@ fn checked(file: &Path, doubts: &Doubts) -> Result<(String, u8), u8> {
     let model = Model::new(manipulator);
     let (summary, too_large) = with_spinner("deriving", || {
         both(
-            || summary(&source, &description, &model, &diagnostics),
+            || summary(&source, &description, &model, &diagnostics, full),
             // Only its programs show whether products of valid numbers still fit the scalar.
             || armgen_codegen::programs(&model, &places, &Options::default()).err(),
         )
@@ -83,30 +84,51 @@ fn checked(file: &Path, doubts: &Doubts) -> Result<(String, u8), u8> {
 const ADVICE: &str =
     "  A valid file may still be wrong: compare the posture at q = 0 with a drawing, or with the arm itself by `armgen page`.\n";
 
-fn summary(source: &Source, description: &RobotDescription, model: &Model, diagnostics: &Diagnostics) -> String {
+/// What the short summary leaves out.
+const MORE: &str = "  `--full` adds limits, drives, inertias as boxes, frames, and what a motion can identify.\n";
+
+fn summary(source: &Source, description: &RobotDescription, model: &Model, diagnostics: &Diagnostics, full: bool) -> String {
     let manipulator = &model.manipulator;
     let verdict = match diagnostics.warnings() {
         0 => "valid".to_string(),
         warnings => format!("valid, with {}", input::counted(warnings, "warning")),
     };
     let title = terminal::bold(&format!("{}: {verdict}", source.name()), &std::io::stdout());
-    let parts = [
-        Some(arm(description, manipulator)),
-        Some(joints::rows(source, description, manipulator)),
-        joints::limits(manipulator),
-        joints::drives(manipulator),
-        Some(bodies::tables(manipulator, posture::distances(manipulator))),
-        Some(posture::tables(manipulator)),
-        Some(identification::report(model)),
-        Some(ADVICE.into()),
-    ];
+    let distances = posture::distances(manipulator);
+    let parts = match full {
+        true => vec![
+            Some(arm(description, manipulator)),
+            Some(joints::rows(source, description, manipulator)),
+            joints::limits(manipulator),
+            joints::drives(manipulator),
+            Some(bodies::masses(manipulator, &distances)),
+            bodies::inertias(manipulator),
+            Some(posture::frames(manipulator)),
+            posture::carried(manipulator),
+            Some(identification::report(model)),
+            Some(ADVICE.into()),
+        ],
+        false => vec![
+            Some(arm(description, manipulator)),
+            Some(joints::rows(source, description, manipulator)),
+            Some(bodies::masses(manipulator, &distances)),
+            posture::carried(manipulator),
+            Some(ADVICE.to_owned() + MORE),
+        ],
+    };
     [title + "\n"].into_iter().chain(parts.into_iter().flatten()).collect::<Vec<_>>().join("\n")
 }
 
 /// The arm as a whole.
 fn arm(description: &RobotDescription, manipulator: &Manipulator) -> String {
     let mut table = Table::new([("", Align::Left), ("", Align::Left)]);
-    let mut row = |name: &str, text: String| table.row([name.to_string(), text]);
+    // Beside the longest of the names.
+    let width = terminal::width() - "  mass of links and rotors  ".len();
+    let mut row = |name: &str, text: String| {
+        for (k, line) in wrapped(&text, width).into_iter().enumerate() {
+            table.row([if k == 0 { name.to_string() } else { String::new() }, line]);
+        }
+    };
     row("robot", manipulator.name.clone());
     row("joints", manipulator.dof().to_string());
     let convention = match description.convention.as_ref().map(|c| c.value) {
@@ -115,6 +137,19 @@ fn arm(description: &RobotDescription, manipulator: &Manipulator) -> String {
         _ => "standard Denavit-Hartenberg: Rz(theta) Tz(d) Tx(a) Rx(alpha)",
     };
     row("convention", convention.into());
+    if !description.units.is_empty() {
+        let named = description.units.iter().map(|named| format!("{} {}", named.key, named.text.value));
+        row("units of the file", format!("{}; here in SI", named.collect::<Vec<_>>().join(", ")));
+    }
+    if let Some(products) = &description.products {
+        row(
+            "products of inertia",
+            match products.value {
+                Products::Tensor => "elements of the tensor, -∫xy dm".into(),
+                Products::Integral => "integrals ∫xy dm in the file, -∫xy dm here".into(),
+            },
+        );
+    }
     let at_nominal = |p: &Polynomial| derive::parameters::nominal(manipulator, p);
     let gravity: Vec<String> = manipulator.gravity.iter().map(|g| decimal(&at_nominal(g))).collect();
     let up = bodies::up(manipulator.gravity.each_ref().map(|g| at_nominal(g).to_f64()));
@@ -155,21 +190,24 @@ fn arm(description: &RobotDescription, manipulator: &Manipulator) -> String {
     table.text()
 }
 
-/// A line of a legend has so many characters at most.
-const WIDTH: usize = 100;
-
 /// What columns are, each with its name before a colon, in lines below their table; empty parts are left out.
 fn legend(parts: &[&str]) -> String {
     let text = parts.iter().copied().filter(|part| !part.is_empty()).collect::<Vec<_>>().join("; ");
-    let mut lines = vec![String::from(" ")];
+    wrapped(&text, terminal::width() - 2).iter().map(|line| format!("  {line}\n")).collect()
+}
+
+/// A text in lines of at most so many characters, but for a word that is longer.
+fn wrapped(text: &str, width: usize) -> Vec<String> {
+    let mut lines = vec![String::new()];
     for word in text.split(' ') {
         let last = lines.last_mut().expect("there is one");
-        match last.chars().count() + 1 + word.chars().count() > WIDTH {
-            true => lines.push(format!("  {word}")),
-            false => *last += &format!(" {word}"),
+        match last.is_empty() {
+            true => last.push_str(word),
+            false if last.chars().count() + 1 + word.chars().count() <= width => *last += &format!(" {word}"),
+            false => lines.push(word.to_owned()),
         }
     }
-    lines.join("\n") + "\n"
+    lines
 }
 
 /// A number for people: six digits at most.
@@ -208,10 +246,10 @@ mod tests {
     use armgen_codegen::exact::Rational;
 
     #[test]
-    fn legends_have_lines_of_a_hundred_characters() {
+    fn legends_are_no_wider_than_a_line() {
         assert_eq!(legend(&["a: b", "", "c: d e"]), "  a: b; c: d e\n");
         let long = legend(&["word"; 40]);
-        assert!(long.lines().all(|line| line.starts_with("  ") && line.chars().count() <= WIDTH), "{long}");
+        assert!(long.lines().all(|line| line.starts_with("  ") && line.chars().count() <= terminal::width()), "{long}");
         assert_eq!(long.matches("word").count(), 40);
     }
 

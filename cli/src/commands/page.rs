@@ -6,9 +6,12 @@ use armgen_page::{Log, Misfit, Run};
 
 use super::verify::with_spinner;
 use crate::output::{place, write_other};
-use crate::{input, terminal, FAULTY};
+use crate::{input, terminal, DONE, FAULTY};
 
-pub(crate) fn run(file: &Path, out: &Path, logs: &[PathBuf]) -> u8 {
+/// `out`: the file to write; without it the name of the description with `.html`, in the folder where the program runs.
+pub(crate) fn run(file: &Path, out: Option<PathBuf>, logs: &[PathBuf]) -> u8 {
+    let is_named = out.is_some();
+    let out = out.unwrap_or_else(|| PathBuf::from(file.file_stem().unwrap_or_else(|| "robot".as_ref())).with_extension("html"));
     let names = match names(logs) {
         Ok(names) => names,
         Err(twice) => {
@@ -39,7 +42,11 @@ pub(crate) fn run(file: &Path, out: &Path, logs: &[PathBuf]) -> u8 {
         Err(code) => return code,
     };
     let read = logs.iter().map(|log| (log.as_path(), "a log of the page"));
-    write_other(read.chain([(file, "the description")]), out, &page)
+    let code = write_other(read.chain([(file, "the description")]), &out, &page);
+    if code == DONE && !is_named {
+        terminal::note(&format!("the page is {}: open it in a browser", out.display()));
+    }
+    code
 }
 
 /// A log under a name.

@@ -3,22 +3,36 @@
 use armgen_codegen::catalogue::Absent;
 use std::path::Path;
 
-use armgen_codegen::show::{Item, Reading, Sheet, Style};
-use armgen_codegen::suggest::did_you_mean;
+use armgen_codegen::show::{Form, Item, Reading, Sheet, Style};
+use armgen_codegen::suggest::function_meant;
 use armgen_codegen::Model;
 
 use crate::{input, terminal, ShowFormat, UNREADABLE};
 
-pub(crate) fn run(file: &Path, quantities: &[String], symbolic: bool, style: Style, format: ShowFormat) -> u8 {
+/// How the equations are asked for.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Asked {
+    pub(crate) symbolic: bool,
+    /// None: by the size of the arm.
+    pub(crate) form: Option<Form>,
+    pub(crate) digits: Option<u8>,
+    pub(crate) format: ShowFormat,
+}
+
+/// Arms of so many joints have closed forms that a person reads.
+const FEW_JOINTS: usize = 4;
+
+pub(crate) fn run(file: &Path, quantities: &[String], asked: &Asked) -> u8 {
     let model = match input::model(file) {
         Ok(model) => model,
         Err(code) => return code,
     };
+    let Asked { symbolic, form, digits, format } = *asked;
+    let own = if model.manipulator.dof() <= FEW_JOINTS { Form::Closed } else { Form::Shortest };
+    let style = Style { form: form.unwrap_or(own), digits };
+    let as_it_comes = form.is_none() && digits.is_none();
     if quantities.iter().any(|name| name.replace('-', "_") == INVERSE_KINEMATICS) {
-        return inverse_kinematics(
-            &model,
-            quantities.len() > 1 || symbolic || style != Style::default() || format != ShowFormat::Text,
-        );
+        return inverse_kinematics(&model, quantities.len() > 1 || symbolic || !as_it_comes || format != ShowFormat::Text);
     }
     let items = match items(&model, quantities) {
         Ok(items) => items,
@@ -34,7 +48,7 @@ pub(crate) fn run(file: &Path, quantities: &[String], symbolic: bool, style: Sty
         }
     }
     // Steps with numbers have one form.
-    let with_steps = quantities.is_empty() && !symbolic && style == Style::default();
+    let with_steps = quantities.is_empty() && !symbolic && as_it_comes;
     terminal::print(&match format {
         ShowFormat::Text if with_steps => format!("{}\n{}", sheet.text(), steps_of_inverse_kinematics(&model)),
         ShowFormat::Text => sheet.text(),
@@ -71,7 +85,7 @@ fn items(model: &Model, quantities: &[String]) -> Result<Vec<Item>, String> {
         let named = Item::named(name, dof);
         if named.is_empty() {
             let names: Vec<String> = Item::names().into_iter().chain([INVERSE_KINEMATICS.to_owned()]).collect();
-            let meant = did_you_mean(&name.replace('-', "_"), &names.iter().map(String::as_str).collect::<Vec<_>>())
+            let meant = function_meant(&name.replace('-', "_"), &names.iter().map(String::as_str).collect::<Vec<_>>())
                 .map_or_else(String::new, |meant| format!("did you mean `{meant}`? "));
             let known: Vec<String> = names.chunks(4).map(|names| names.join(", ")).collect();
             let lists: Vec<String> = Item::lists().iter().map(|of| format!("{of}_1 to {of}_{dof}")).collect();

@@ -28,6 +28,18 @@ pub fn colour(stream: &impl IsTerminal) -> Colour {
     }
 }
 
+/// Characters of a line where standard output is no terminal.
+const LINE: usize = 100;
+/// No line is broken to fewer.
+const SHORTEST_LINE: usize = 60;
+
+/// Characters of a line on standard output: those of the terminal, a hundred at most.
+pub fn width() -> usize {
+    let of_terminal =
+        terminal_size::terminal_size().filter(|_| std::io::stdout().is_terminal()).map(|(width, _)| usize::from(width.0));
+    of_terminal.map_or(LINE, |width| width.clamp(SHORTEST_LINE, LINE))
+}
+
 /// Bold, where the stream takes colours.
 pub fn bold(text: &str, stream: &impl IsTerminal) -> String {
     match colour(stream) {

@@ -41,8 +41,14 @@ impl Table {
         place.is_some_and(|j| self.rows.iter().any(|row| !row[j].is_empty()))
     }
 
-    /// The table, each line indented by two and ended by a line break; no header if no column has a name, no column that is empty.
+    /// The table, each line indented by two and ended by a line break; no header if no column has a name, no column that is empty. What is wider than
+    /// a line comes in blocks below each other, each with the first column.
     pub fn text(&self) -> String {
+        self.within(crate::width())
+    }
+
+    /// The same in lines of at most so many characters, but for a column that is wider.
+    fn within(&self, most: usize) -> String {
         let header: Vec<String> = self.columns.iter().map(|(name, _)| name.clone()).collect();
         let named = header.iter().any(|name| !name.is_empty());
         let kept: Vec<usize> = (0..header.len()).filter(|&j| self.rows.iter().any(|row| !row[j].is_empty())).collect();
@@ -50,6 +56,26 @@ impl Table {
         let lines: Vec<&Vec<String>> = named.then_some(&header).into_iter().chain(&rows).collect();
         let width = |j: usize| lines.iter().map(|line| line[j].chars().count()).max().unwrap_or(0);
         let widths: Vec<usize> = (0..header.len()).map(width).collect();
+        let mut blocks: Vec<Vec<usize>> = Vec::new();
+        let mut used = 0;
+        for &j in &kept {
+            match blocks.last_mut() {
+                Some(block) if used + 2 + widths[j] <= most => block.push(j),
+                Some(_) => {
+                    let first = kept[0];
+                    blocks.push(vec![first, j]);
+                    used = 2 + widths[first];
+                }
+                None => blocks.push(vec![j]),
+            }
+            used += 2 + widths[j];
+        }
+        let texts: Vec<String> = blocks.iter().map(|block| self.block(block, &lines, &widths)).collect();
+        texts.join("\n")
+    }
+
+    /// Some of the columns.
+    fn block(&self, kept: &[usize], lines: &[&Vec<String>], widths: &[usize]) -> String {
         let mut text = String::new();
         for line in lines {
             let cells: Vec<String> = kept
@@ -94,6 +120,15 @@ mod tests {
         table.row(["a".into(), String::new(), "1".into()]);
         table.row(["längere".into(), String::new(), "10".into()]);
         assert_eq!(table.text(), "  name      x\n  a         1\n  längere  10\n");
+    }
+
+    #[test]
+    fn wide_tables_come_in_blocks() {
+        let mut table = Table::new([("name", Align::Left), ("a", Align::Right), ("b", Align::Right), ("c", Align::Right)]);
+        table.row(["one".into(), "1000".into(), "2000".into(), "3000".into()]);
+        assert_eq!(table.within(100), "  name     a     b     c\n  one   1000  2000  3000\n");
+        assert_eq!(table.within(20), "  name     a     b\n  one   1000  2000\n\n  name     c\n  one   3000\n");
+        assert!((12..40).all(|width| table.within(width).lines().all(|line| line.chars().count() <= width)));
     }
 
     #[test]

@@ -4,7 +4,7 @@ use std::collections::BTreeSet;
 use std::fmt;
 
 use crate::catalogue::{self, Quantity};
-use crate::suggest::did_you_mean;
+use crate::suggest::function_meant;
 
 /// A choice of functions: all of them unless some are named.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
@@ -63,7 +63,7 @@ fn complaint(name: &str) -> String {
     let words: Vec<&str> = names.iter().map(String::as_str).collect();
     // Not every function has a form with the parameters at run time.
     let plain = name.strip_suffix("_with").and_then(|plain| words.iter().copied().find(|&word| word == plain));
-    match plain.or_else(|| did_you_mean(name, &words)) {
+    match plain.or_else(|| function_meant(name, &words)) {
         Some(near) => format!("there is no function `{name}`: do you mean `{near}`?"),
         None => format!("there is no function `{name}`; there are {}", names.join(", ")),
     }

@@ -1,15 +1,17 @@
 //! Tree of nodes -> [`RobotDescription`]: which keys there are, and what kind of value stands under each.
 
 use super::other_formats::{OTHER_NAMES, OTHER_PLACES};
+use super::units::{UnitKey, KEYS};
 use super::{
     AttachedDescription, BodyDescription, Convention, FrictionDescription, InertiaDescription, JointDescription,
-    LimitsDescription, MotorDescription, ParameterDescription, PoseDescription, PoseElement, PosturesDescription,
-    RegressorDescription, RobotDescription, RotationDescription, SpringDescription, StribeckDescription, Value, INERTIA_ELEMENTS,
+    LimitsDescription, MotorDescription, NamedUnit, ParameterDescription, PoseDescription, PoseElement, PosturesDescription,
+    Products, RegressorDescription, RobotDescription, RotationDescription, SpringDescription, StribeckDescription, Value,
+    INERTIA_ELEMENTS,
 };
 use crate::diagnostic::{Code, Diagnostics};
 use crate::document::reader::{first_key, optional, required, usual, Fields, Key, Reader};
 use crate::document::yaml::{Kind, Node};
-use crate::document::Expression;
+use crate::document::{excerpt, Expression, Unit};
 use crate::kinds::{JointKind, Target, TaskRow};
 use crate::source::{Source, Span, Spanned};
 
@@ -17,6 +19,8 @@ const ROBOT: &[Key] = &[
     required("name", "name: my_robot"),
     required("convention", "convention: standard"),
     required("gravity", "gravity: [0, 0, -9.81]"),
+    optional("units"),
+    optional("products"),
     optional("parameters"),
     optional("base"),
     required("joints", "joints:` and below it one `- name: ..."),
@@ -129,6 +133,12 @@ impl Reader<'_> {
             name: fields.get("name").and_then(|(key, node)| self.word(node, key, "name")),
             convention,
             gravity: fields.get("gravity").and_then(|(key, node)| self.vector(node, key, "gravity", ["x", "y", "z"])),
+            units: fields.get("units").map_or_else(Vec::new, |(key, node)| self.units(node, key)),
+            products: fields.get("products").and_then(|(key, node)| {
+                let words = [("tensor", Products::Tensor), ("integral", Products::Integral)];
+                let help = "`tensor`: xy is the element -∫xy dm of the inertia tensor; `integral`: xy is ∫xy dm, which has the other sign";
+                self.choice(node, key, "products", &words, Code::UnknownProducts, help)
+            }),
             parameters: fields.get("parameters").map_or_else(Vec::new, |(key, node)| self.parameters(node, key)),
             joints: fields.get("joints").and_then(|(key, node)| self.joints(node, key, rows)),
             base: fields.get("base").and_then(|(key, node)| self.pose(node, key, "base")),
@@ -142,6 +152,25 @@ impl Reader<'_> {
                 .unwrap_or_default(),
             allow: fields.get("allow").map_or_else(Vec::new, |(key, node)| self.allow(node, key)),
         }
+    }
+
+    fn units(&mut self, node: &Node, key: Span) -> Vec<NamedUnit> {
+        let keys = KEYS.each_ref().map(|key| optional(key.name));
+        let Some(fields) = self.mapping(node, "`units`", key, &keys) else { return Vec::new() };
+        let mut named = Vec::new();
+        for &UnitKey { name, si, examples, .. } in &KEYS {
+            let Some((place, node)) = fields.get(name) else { continue };
+            let help = format!("units of `{name}` are {examples}");
+            let Some(text) = self.text(node, place, name, "a unit", &help) else { continue };
+            match Unit::named(&text.value).filter(|(_, of)| *of == si) {
+                Some((unit, _)) => named.push(NamedUnit { key: name, text, unit }),
+                None => {
+                    let message = format!("`{}` is no unit of `{name}`", excerpt(&text.value));
+                    self.report(Code::UnknownUnit, text.span, message, "unknown unit", help);
+                }
+            }
+        }
+        named
     }
 
     fn parameters(&mut self, node: &Node, key: Span) -> Vec<ParameterDescription> {
@@ -421,6 +450,11 @@ impl Reader<'_> {
             Ok(values) => Some(Spanned::new(values, node.span)),
             Err(_) => {
                 let message = format!("`{name}` takes {N} values, found {found}");
+                let whole = |item: &Node| matches!(&item.kind, Kind::Scalar(s) if s.text.trim_start_matches('-').bytes().all(|b| b.is_ascii_digit()));
+                let help = match found > N && items.windows(2).any(|pair| pair.iter().all(whole)) {
+                    true => format!("decimals have a point, and no comma: `0.5`; {help}"),
+                    false => help,
+                };
                 self.report(Code::WrongLength, node.span, message, format!("{found} instead of {N}"), help);
                 None
             }

@@ -11,13 +11,15 @@
 
 mod units;
 
+pub use units::{decimal_text, Unit};
+
 use dashu_int::{IBig, UBig};
 
 use super::excerpt;
 use super::yaml::Scalar;
 use crate::diagnostic::{Code, Diagnostic};
 use crate::exact::Rational;
-use crate::source::Span;
+use crate::source::{Source, Span};
 
 /// Parentheses, functions and signs may nest so deep.
 const MAX_DEPTH: usize = 32;
@@ -76,6 +78,8 @@ pub enum ExpressionKind {
     Degrees(Box<Expression>),
     /// The root of a.
     Root(Box<Expression>),
+    /// a in a unit that the file names for it.
+    InUnit(Box<Expression>, Unit),
 }
 
 /// Operators between two expressions.
@@ -108,7 +112,9 @@ impl Expression {
         match &self.kind {
             ExpressionKind::Decimal(_) | ExpressionKind::Pi => {}
             ExpressionKind::Name(name) => names.push((name, self.span)),
-            ExpressionKind::Negate(a) | ExpressionKind::Degrees(a) | ExpressionKind::Root(a) => a.collect_names(names),
+            ExpressionKind::Negate(a) | ExpressionKind::Degrees(a) | ExpressionKind::Root(a) | ExpressionKind::InUnit(a, _) => {
+                a.collect_names(names)
+            }
             ExpressionKind::Binary(_, a, b) => {
                 a.collect_names(names);
                 b.collect_names(names);
@@ -134,6 +140,7 @@ impl Expression {
             }
             ExpressionKind::Degrees(a) => a.to_f64()?.to_radians(),
             ExpressionKind::Root(a) => a.to_f64()?.sqrt(),
+            ExpressionKind::InUnit(a, unit) => a.to_f64()? * unit.to_f64(),
         })
     }
 
@@ -158,10 +165,48 @@ impl Expression {
         }
         match &self.kind {
             ExpressionKind::Degrees(_) => true,
-            ExpressionKind::Negate(a) => a.is_in_degrees(),
+            ExpressionKind::Negate(a) | ExpressionKind::InUnit(a, _) => a.is_in_degrees(),
             ExpressionKind::Binary(Operator::Multiply, a, b) if is_whole(a) => b.is_in_degrees(),
             ExpressionKind::Binary(Operator::Multiply | Operator::Divide, a, b) if is_whole(b) => a.is_in_degrees(),
             _ => false,
+        }
+    }
+
+    /// The value of a decimal, with or without a sign.
+    pub fn as_decimal(&self) -> Option<Rational> {
+        match &self.kind {
+            ExpressionKind::Decimal(value) => Some(value.clone()),
+            ExpressionKind::Negate(a) => a.as_decimal().map(|value| -value),
+            _ => None,
+        }
+    }
+
+    /// The same value in a unit.
+    #[must_use]
+    pub fn in_unit(self, unit: Unit) -> Expression {
+        let span = self.span;
+        Expression { kind: ExpressionKind::InUnit(Box::new(self), unit), span }
+    }
+
+    /// Its text in SI units: as it stands in the file, but for a value in a unit of the file, which is converted exactly.
+    pub fn text(&self, source: &Source) -> String {
+        let ExpressionKind::InUnit(value, unit) = &self.kind else {
+            return source.slice(self.span).trim_matches(['"', '\'']).to_owned();
+        };
+        let decimal = value.as_decimal().and_then(|value| decimal_text(&(value * &unit.factor)));
+        match (decimal, unit.degrees) {
+            (Some(decimal), true) if decimal != "0" => format!("deg({decimal})"),
+            (Some(decimal), _) => decimal,
+            (None, degrees) => {
+                let text = value.text(source).split_whitespace().collect::<Vec<_>>().join(" ");
+                let factor = decimal_text(&unit.factor).unwrap_or_else(|| unit.factor.to_string());
+                match (factor.as_str(), degrees) {
+                    ("1", true) => format!("deg({text})"),
+                    (_, true) => format!("deg(({text})*{factor})"),
+                    ("-1", false) => format!("-({text})"),
+                    (_, false) => format!("({text})*{factor}"),
+                }
+            }
         }
     }
 
@@ -465,9 +510,18 @@ impl<'a> Parser<'a> {
             let help = units::without(&self.text[..self.at], self.rest())
                 .or_else(|| units::compound(self.rest()))
                 .unwrap_or_else(|| format!("write `{number}*{}` if a product is meant", excerpt(word)));
-            return Err(self.error(self.at, end, "this sticks to a number", help));
+            return Err(self.error(self.at, end, "letters directly behind a number", help));
         }
         Ok(())
+    }
+
+    /// The number with a point, where the text is one with a comma.
+    fn decimal_with_comma(&self) -> Option<String> {
+        let (whole, fraction) = self.text.trim().split_once(',')?;
+        let is_number = |text: &str| !text.is_empty() && text.bytes().all(|b| b.is_ascii_digit());
+        let digits = fraction.split_once(['e', 'E']).map_or(fraction, |(digits, _)| digits);
+        (is_number(whole.trim_start_matches('-')) && is_number(digits))
+            .then(|| format!("{}.{}", excerpt(whole), excerpt(fraction)))
     }
 
     /// Complains about the character here, or the end.
@@ -490,6 +544,9 @@ impl<'a> Parser<'a> {
         if let Some(name) = super::invisible(c) {
             let help = "remove it, or type a space: it came with a text that was pasted";
             return self.error(self.at, self.at + c.len_utf8(), name, help);
+        }
+        if let Some(decimal) = self.decimal_with_comma() {
+            return self.error(self.at, self.at + 1, "a decimal comma", format!("a decimal has a point: write `{decimal}`"));
         }
         let help = match c {
             '#' => "write a blank before `#`, with which a comment begins",

@@ -147,10 +147,21 @@ impl<'d> Reader<'d> {
         };
         let mut fields = Fields { at, entries: Vec::new() };
         let mut unknown = Vec::new();
-        for (key, value) in entries {
+        for (place, (key, value)) in entries.iter().enumerate() {
             match names.iter().find(|name| **name == key.value) {
                 Some(name) => fields.entries.push((name, key.span, value)),
-                None => unknown.push((key, value)),
+                None => match place.checked_sub(1).and_then(|before| decimal_comma(&entries[before], key, value)) {
+                    Some(help) => {
+                        self.report(
+                            Code::UnknownKey,
+                            key.span,
+                            "a decimal has a point, and no comma",
+                            "behind a decimal comma",
+                            help,
+                        );
+                    }
+                    None => unknown.push((key, value)),
+                },
             }
         }
         for (key, value) in unknown {
@@ -266,6 +277,15 @@ impl<'d> Reader<'d> {
         let message = format!("{} must be {expected}, found {found}", quoted(name));
         self.report(Code::WrongKind, visible(node, key), message, "wrong kind of value", help);
     }
+}
+
+/// What to write where `{mass: 1,2}` has made a key of what stands behind the comma.
+fn decimal_comma((before, value): &(Spanned<String>, Node), key: &Spanned<String>, behind: &Node) -> Option<String> {
+    let (Kind::Scalar(whole), Kind::Scalar(nothing)) = (&value.kind, &behind.kind) else { return None };
+    let is_number = |text: &str| !text.is_empty() && text.bytes().all(|b| b.is_ascii_digit());
+    let fraction = key.value.split_once(['e', 'E']).map_or(key.value.as_str(), |(digits, _)| digits);
+    let fits = nothing.is_nothing() && is_number(whole.text.trim_start_matches('-')) && is_number(fraction);
+    fits.then(|| format!("write `{}: {}.{}`", excerpt(&before.value), excerpt(&whole.text), excerpt(&key.value)))
 }
 
 /// How a mapping is written where `node` stands instead, if its keys have examples: a lone number goes under the key that is a number alone.

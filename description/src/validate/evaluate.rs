@@ -1,6 +1,6 @@
 //! Expression -> polynomial in the names that are symbols.
 
-use super::number::{degrees, is_small, nominal, number, too_complex, Evaluated};
+use super::number::{degrees, is_small, nominal, number, too_complex, unit_in_si, Evaluated};
 use super::parameters::Parameters;
 use super::Context;
 use crate::description::Value;
@@ -67,6 +67,7 @@ impl<'d> Evaluator<'d> {
             }
             ExpressionKind::Negate(a) => -&self.symbolic(a)?,
             ExpressionKind::Degrees(a) => &self.symbolic(a)? * &Polynomial::from(degrees(&Number::one())),
+            ExpressionKind::InUnit(a, unit) => &self.symbolic(a)? * &Polynomial::from(unit_in_si(unit)),
             ExpressionKind::Binary(operator, a, b) => {
                 let a = self.symbolic(a)?;
                 let b = match operator {

@@ -25,6 +25,8 @@ const NEAR: f64 = 2e-3;
 const MAX_SQUARE: usize = 32;
 /// A limit, or the rest of a spring, beyond this many radians is probably one in degrees: nearly five turns.
 const SUSPECT_LIMIT: f64 = 30.0;
+/// Two turns: joints of more are rare, and their limits no whole numbers of radians.
+const SUSPECT_WHOLE: f64 = 4.0 * std::f64::consts::PI;
 
 /// Sine and cosine of an angle of the file.
 pub(super) fn sine_cosine(value: &Value, what: &str, context: &mut Context<'_>) -> Option<(Number, Number)> {
@@ -41,9 +43,25 @@ pub(super) fn sine_cosine(value: &Value, what: &str, context: &mut Context<'_>) 
     Some((angle.sin(), angle.cos()))
 }
 
-/// Warns of a limit, or of the rest of a spring, in degrees. A rounded one is as good as another.
-pub(super) fn doubt_limit(expression: &Expression, radians: &Number, what: &str, context: &mut Context<'_>) {
-    let _ = doubt_degrees(expression, radians, what, SUSPECT_LIMIT, context);
+/// Warns of limits, or of the rest of a spring, in degrees; where one of two is, both are. A rounded one is as good as another.
+pub(super) fn doubt_limits(limits: &[(&Expression, &Number)], what: &str, context: &mut Context<'_>) {
+    let is_suspect = |(expression, radians): &(&Expression, &Number), context: &Context<'_>| {
+        let (written, radians) = defined(expression, radians, context);
+        let size = radians.to_f64().abs();
+        size > SUSPECT_LIMIT || size > SUSPECT_WHOLE && written.as_decimal().is_some_and(|value| value.is_int())
+    };
+    if limits.iter().any(|limit| is_suspect(limit, context)) {
+        for (expression, radians) in limits {
+            let _ = doubt_degrees(expression, radians, what, 0.0, context);
+        }
+    }
+}
+
+/// The definition of a name, and its value: a name that stands for a decimal is as doubtful as the decimal; the remedy belongs to its definition.
+fn defined(expression: &Expression, radians: &Number, context: &Context<'_>) -> (Expression, Number) {
+    let definition = expression.as_name().and_then(|name| context.evaluator.parameters.get(name));
+    let definition = definition.and_then(|entry| entry.value.zip(entry.nominal.clone()));
+    definition.map_or_else(|| (expression.clone(), radians.clone()), |(expression, radians)| (expression.clone(), radians))
 }
 
 /// Warns of an angle above `suspect` that is written as a decimal, and of one that is nearly a multiple of pi/12.
@@ -61,10 +79,7 @@ fn doubt_degrees(
     suspect: f64,
     context: &mut Context<'_>,
 ) -> Option<(Span, Number)> {
-    // A name that stands for a decimal is as doubtful as the decimal; the remedy belongs to its definition.
-    let definition = expression.as_name().and_then(|name| context.evaluator.parameters.get(name));
-    let definition = definition.and_then(|entry| entry.value.zip(entry.nominal.clone()));
-    let (written, radians) = definition.unwrap_or((expression, radians.clone()));
+    let (written, radians) = defined(expression, radians, context);
     let float = radians.to_f64();
     if float.abs() > suspect {
         if written.is_decimal() {

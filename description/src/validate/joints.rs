@@ -115,7 +115,7 @@ fn spring(description: &SpringDescription, kind: Option<JointKind>, called: &str
         Some(rest) => {
             let value = context.number(rest).filter(|_| kind == Some(JointKind::Revolute));
             if let Some(value) = value {
-                geometry::doubt_limit(rest, &value, &format!("the rest of the spring of joint {called}"), context);
+                geometry::doubt_limits(&[(rest, &value)], &format!("the rest of the spring of joint {called}"), context);
             }
             context.polynomial(rest)
         }
@@ -130,9 +130,8 @@ fn limits(description: &LimitsDescription, kind: Option<JointKind>, called: &str
             let bounds = context.numbers(&position.value);
             if let Some([lowest, highest]) = &bounds {
                 if kind == Some(JointKind::Revolute) {
-                    for (expression, value) in position.value.iter().flatten().zip([lowest, highest]) {
-                        geometry::doubt_limit(expression, value, &format!("a limit of joint {called}"), context);
-                    }
+                    let limits: Vec<_> = position.value.iter().flatten().zip([lowest, highest]).collect();
+                    geometry::doubt_limits(&limits, &format!("a limit of joint {called}"), context);
                 }
                 let order = (highest - lowest).sign();
                 if order != Ordering::Greater {

@@ -8,7 +8,7 @@ use std::cmp::Ordering;
 use dashu_base::{BitTest, UnsignedAbs};
 
 use crate::diagnostic::{Code, Diagnostic, Diagnostics};
-use crate::document::{excerpt, out_of_range, Expression, ExpressionKind, Operator};
+use crate::document::{excerpt, out_of_range, Expression, ExpressionKind, Operator, Unit};
 use crate::exact::{Atom, Number, Rational};
 use crate::kinds::Scalar;
 
@@ -89,6 +89,7 @@ pub(super) fn nominal(expression: &Expression, nominals: &dyn Nominals) -> Evalu
         ExpressionKind::Name(name) => nominals.nominal(name).ok_or(None)?,
         ExpressionKind::Negate(a) => -&of(a)?,
         ExpressionKind::Degrees(a) => degrees(&of(a)?),
+        ExpressionKind::InUnit(a, unit) => &of(a)? * &unit_in_si(unit),
         ExpressionKind::Root(a) => {
             let inner = of(a)?;
             if nesting(&inner) >= MAX_NESTING {
@@ -145,6 +146,16 @@ fn multiply(a: &Number, b: &Number) -> Option<Number> {
 pub(super) fn degrees(value: &Number) -> Number {
     let unit = &Number::pi() * &Number::from(Rational::from_parts(1.into(), 180u8.into()));
     value * &unit
+}
+
+/// A unit of the file in SI units.
+pub(super) fn unit_in_si(unit: &Unit) -> Number {
+    let factor = Number::from(unit.factor.clone());
+    if unit.degrees {
+        degrees(&factor)
+    } else {
+        factor
+    }
 }
 
 pub(super) fn too_complex(expression: &Expression) -> Option<Box<Diagnostic>> {

@@ -8,7 +8,7 @@
 use std::collections::{BTreeMap, BTreeSet};
 
 use super::number::{self, Nominals};
-use super::places::{self, Occurrence, Role};
+use super::places::{Occurrence, Role};
 use crate::description::{JointDescription, RegressorDescription, RobotDescription};
 use crate::diagnostic::{Code, Diagnostic, Diagnostics};
 use crate::document::{excerpt, Expression, ExpressionKind, Operator};
@@ -150,7 +150,7 @@ impl<'d> Parameters<'d> {
             parameters.entries.push(entry);
         }
         let offsets = offsets(description);
-        for (role, expression) in places::expressions(description) {
+        description.each_value(|role, _, expression| {
             let within = offsets.get(&expression.span).copied().unwrap_or(Within::Other);
             parameters.note_uses(expression, role, within, diagnostics);
             match role {
@@ -162,7 +162,7 @@ impl<'d> Parameters<'d> {
             if role != Role::Limit {
                 parameters.force_within(expression);
             }
-        }
+        });
         for i in 0..parameters.entries.len() {
             if let Some(value) = parameters.entries[i].value.filter(|_| parameters.entries[i].abbreviation) {
                 parameters.force_within(value);
@@ -292,7 +292,7 @@ impl<'d> Parameters<'d> {
 fn collect_nonpolynomial<'e>(expression: &'e Expression, found: &mut Vec<(&'e Expression, Reason)>) {
     match &expression.kind {
         ExpressionKind::Decimal(_) | ExpressionKind::Pi | ExpressionKind::Name(_) => {}
-        ExpressionKind::Negate(a) | ExpressionKind::Degrees(a) => collect_nonpolynomial(a, found),
+        ExpressionKind::Negate(a) | ExpressionKind::Degrees(a) | ExpressionKind::InUnit(a, _) => collect_nonpolynomial(a, found),
         ExpressionKind::Root(a) => {
             found.push((a, Reason::Root));
             collect_nonpolynomial(a, found);

@@ -5,8 +5,10 @@
 //! | kind | warns of | since |
 //! |---|---|---|
 //! | `implausible-reach` | a length, all lengths together, or a limit of a slide beyond 30 m | the longest arms, of space stations and concrete pumps, have links of some 10 m; 0.05 m written in mm is 50 |
+//! | the same | a row's length of more than five times all others together that would be one of them in cm or mm | a point lost in one row |
 //! | `implausible-mass` | masses of more than 2000 kg per cube of what the arm spans | industrial arms have 3 to 80; a solid cube of that side made of light alloy has 2700 |
 //! | the same | a payload of five times the mass of all links and motors, under gravity | hydraulic arms lift some four times their own |
+//! | the same | a rotor that weighs more than all links | motors are parts of arms |
 //! | `outlying-mass` | a link of five times the mass of all others together, unless its inertia is that of a body of such a mass: that of a ball less dense than light alloy | the heaviest links of arms have about half of the whole; a torso below a head has more, but its inertia says so, too, and a slip of ten in a mass makes the ball 316 times as dense |
 //! | `implausible-com` | a centre of mass farther from its frame than the arm is long | it lies within its link; a payload is no longer than the arm |
 //! | `implausible-inertia` | a radius of gyration above what the link, or for a payload the arm, spans | two point masses at the ends of a rod have half; files that are much in use have up to 0.95 |
@@ -15,15 +17,23 @@
 //! | both, of all links together | a median density of their boxes below that of rigid foam, or above that of lead: all tensors ten times too large or too small, which each of them alone may be | of 46 files that are much in use 42 have 320 to 5600 kg/m³, and the others values that nobody measured |
 //! | `missing-inertia` | no inertia on a link of a twentieth of the arm's mass | a point mass has none, and no link is one |
 //! | `reflected-rotor` | a rotor that weighs more at its joint, ratio² I, than three times the whole arm at its reach | gears are chosen to match |
+//! | `implausible-armature` | the same of an armature | |
 //! | `inverted-ratio` | a ratio below 1/5 | gears of arms slow down: rotor speed over joint speed is at least 1 |
 //! | `implausible-gravity` | a size that no planet or moon of a lander has, to 2 in 100 | tables of planets |
 //! | `implausible-velocity` | a limit beyond 60 rad/s or 20 m/s | the fastest wrists of packing robots turn at 35, legs without much of a gear at 52; the slowest arms make 60 degrees per second |
-//! | `weak-effort` | an effort limit that dry friction alone takes | a joint with it does not move; motors' torques are given before the gear, friction behind it |
+//! | the same | from 30 rad/s on a whole multiple of five; a whole number eight times as large as the limits of all other joints | a limit in degrees per second among some in rad/s |
+//! | `implausible-effort` | an effort limit of 300 times what holds the whole arm at its reach | the strongest legs have some ten times |
+//! | `implausible-friction` | friction of five times what holds the whole arm at its reach, at 1 rad/s; a load friction above 2; Stribeck friction that fades beyond the velocity limit, 10 rad/s or 1 m/s | such a joint would not move; Stribeck friction is one of creeping |
+//! | `weak-effort` | an effort limit below half of what gravity asks for in some posture, without a spring | such an arm falls |
+//! | the same | an effort limit that dry friction alone takes | a joint with it does not move; motors' torques are given before the gear, friction behind it |
 //! | `active-friction` | friction that drives the joint somewhere below its velocity limit | friction takes energy; fits to noisy measurements do not know that |
 //! | `dust` | a length or an angle that is not 0 but below 1e-9 | less than the size of an atom at any reach; exact equations carry it along |
 
 mod densities;
+mod drives;
 mod frames;
+mod holding;
+mod slips;
 
 use super::{call, Context};
 use crate::description::{BodyDescription, JointDescription, PoseDescription, RobotDescription, RotationDescription, Value};
@@ -32,7 +42,10 @@ use crate::document::Expression;
 use crate::kinds::JointKind;
 use crate::source::Span;
 pub use densities::{density_of_cuboid, doubt_of_density};
+use drives::{check_effort, check_friction, check_velocity};
 use frames::check_reference;
+pub(super) use holding::check_holding;
+use slips::{in_text, likely_tensors, single_slip, written_as};
 
 const LONGEST: f64 = 30.0;
 const MASS_PER_CUBE: f64 = 2000.0;
@@ -40,6 +53,8 @@ const OUTLYING: f64 = 5.0;
 const LEAD: f64 = 11_340.0;
 const LIGHT_ALLOY: f64 = 2700.0;
 const OF_LEAD_BALL: f64 = 0.5;
+/// So many other lengths tell what is usual on an arm.
+const FEWEST_LENGTHS: usize = 3;
 const HEAVY_PART: f64 = 0.05;
 const REFLECTED: f64 = 3.0;
 const LEAST_RATIO: f64 = 0.2;
@@ -97,6 +112,10 @@ pub(super) fn check(description: &RobotDescription, context: &mut Context<'_>) {
             dust(value, &format!("`{name}` of joint {called}"), "rad", context);
         }
     }
+    if let Some(base) = &description.base {
+        translation(base, "the base", context);
+    }
+    check_outlying_length(joints, context);
     let mut reach: f64 = lengths.iter().sum();
     let tool = description.tool.as_ref().map(|tool| (translation(tool, "the tool", context), tool.key));
     reach += tool.map_or(0.0, |(length, _)| length);
@@ -122,7 +141,11 @@ pub(super) fn check(description: &RobotDescription, context: &mut Context<'_>) {
         check_velocity(joint, &called, context);
         check_effort(joint, &called, context);
         check_friction(joint, &called, context);
+        if !doubted {
+            arm.check_sizes(joint, &called, context);
+        }
     }
+    arm.check_rates(context);
     if let Some(payload) = &description.payload {
         let weightless = description.gravity.as_ref().is_some_and(|g| g.value.iter().all(|g| number(g, context) == 0.0));
         arm.check_payload(payload, doubted, weightless, context);
@@ -161,8 +184,12 @@ fn number(value: &Value, context: &mut Context<'_>) -> f64 {
 
 /// Where a value is written: at the definition where it is a name.
 fn written(value: &Expression, context: &Context<'_>) -> Span {
-    let definition = value.as_name().and_then(|name| context.evaluator.parameters.get(name)).and_then(|entry| entry.value);
-    definition.map_or(value.span, |definition| definition.span)
+    definition(value, context).span
+}
+
+/// The value itself, or the definition of the name that it is.
+fn definition<'v>(value: &'v Expression, context: &'v Context<'_>) -> &'v Expression {
+    value.as_name().and_then(|name| context.evaluator.parameters.get(name)).and_then(|entry| entry.value).unwrap_or(value)
 }
 
 /// The size of a length, m; warns of one that is too long, and of one that is next to nothing.
@@ -171,8 +198,8 @@ fn length(value: &Value, what: &str, context: &mut Context<'_>) -> f64 {
     let size = number(value, context);
     if let (true, Some(expression)) = (size.abs() > LONGEST, value) {
         let span = written(expression, context);
-        let message = format!("{what} is {} m long: no arm is", short(size.abs()));
-        let help = format!("lengths are in m; if this is in mm, write {}", short(size / 1e3));
+        let message = format!("{what} is {} m: longer than any arm", short(size.abs()));
+        let help = in_text("lengths are in m", "mm", written_as(expression, 1000, context));
         context.report(Code::ImplausibleReach, span, message, "in mm?", help);
     }
     size.abs()
@@ -195,6 +222,32 @@ fn check_reach(joints: &[JointDescription], lengths: &[f64], tool: Option<(f64, 
     context.report(Code::ImplausibleReach, span.unwrap_or(joint.span), message, "the longest; all in cm?", help);
 }
 
+/// One a or d that is longer than all others together, and in another unit of a length as theirs.
+fn check_outlying_length(joints: &[JointDescription], context: &mut Context<'_>) {
+    let mut all = Vec::new();
+    for (i, joint) in joints.iter().enumerate() {
+        for (value, name) in [(&joint.a, "a"), (&joint.d, "d")] {
+            let size = number(value, context).abs();
+            all.extend(value.as_ref().filter(|_| size > 0.0).map(|expression| (size, expression, name, call(i, joint))));
+        }
+    }
+    let Some(longest) = (0..all.len()).reduce(|a, b| if all[b].0 > all[a].0 { b } else { a }) else { return };
+    let (size, expression, name, called) = all.swap_remove(longest);
+    let others = all.iter().map(|other| other.0);
+    let (sum, least, most) =
+        (others.clone().sum::<f64>(), others.clone().fold(f64::INFINITY, f64::min), others.fold(0.0, f64::max));
+    if all.len() < FEWEST_LENGTHS || size <= OUTLYING * sum || size > LONGEST {
+        return;
+    }
+    let fits = |factor: f64| (least..=most).contains(&(size / factor));
+    let Some((factor, unit)) = [(100, "cm"), (1000, "mm")].into_iter().find(|(factor, _)| fits(f64::from(*factor))) else {
+        return;
+    };
+    let message = format!("`{name}` of joint {called} is {} m, and all others together are {} m", short(size), short(sum));
+    let help = in_text("lengths are in m", unit, written_as(expression, u64::from(factor as u32), context));
+    context.report(Code::ImplausibleReach, written(expression, context), message, format!("in {unit}?"), help);
+}
+
 /// How far a joint slides: neither a length that no arm has nor an angle.
 fn check_stroke(joint: &JointDescription, called: &str, context: &mut Context<'_>) {
     if joint.kind.as_ref().is_none_or(|kind| kind.value == JointKind::Revolute) {
@@ -211,7 +264,7 @@ fn check_stroke(joint: &JointDescription, called: &str, context: &mut Context<'_
         } else if size.abs() > LONGEST {
             let message =
                 format!("a limit of joint {called} is {} m from 0: no joint of an arm slides as far", short(size.abs()));
-            let help = format!("lengths are in m; if this is in mm, write {}", short(size / 1e3));
+            let help = in_text("lengths are in m", "mm", written_as(expression, 1000, context));
             context.report(Code::ImplausibleReach, span, message, "in mm?", help);
         }
     }
@@ -219,8 +272,7 @@ fn check_stroke(joint: &JointDescription, called: &str, context: &mut Context<'_
 
 /// Whether a value is an angle in degrees, by itself or by the name that it is.
 fn is_in_degrees(value: &Expression, context: &Context<'_>) -> bool {
-    let definition = value.as_name().and_then(|name| context.evaluator.parameters.get(name)).and_then(|entry| entry.value);
-    definition.unwrap_or(value).is_in_degrees()
+    definition(value, context).is_in_degrees()
 }
 
 fn dust(value: &Value, what: &str, unit: &str, context: &mut Context<'_>) {
@@ -306,13 +358,16 @@ impl Arm<'_> {
         let (mass, called) = (self.masses[heaviest], call(heaviest, &self.joints[heaviest]));
         let size =
             self.reach + self.joints.last().and_then(|joint| joint.link.as_ref()).map_or(0.0, |link| extent(link, context));
+        // Where lengths are in mm they are told of, and masses may be in g as well.
+        let in_mm = context.diagnostics.iter().any(|diagnostic| diagnostic.code == Code::ImplausibleReach);
+        let size = if in_mm && size > LONGEST { size / 1e3 } else { size };
         if self.reach > SMALL_REACH && total > MASS_PER_CUBE * size.powi(3) {
             let message = format!(
                 "the links weigh {} kg, on an arm of {} m: more than solid metal; the heaviest is the link of joint {called}",
                 short(total),
                 short(size)
             );
-            let help = format!("masses are in kg, lengths in m; if this is in g, write {}", short(mass / 1e3));
+            let help = in_text("masses are in kg, lengths in m", "g", written_as(expression, 1000, context));
             context.report(Code::ImplausibleMass, span, message, "in g?", help);
             return true;
         }
@@ -327,9 +382,13 @@ impl Arm<'_> {
             let others = (total - mass) / (with_mass - 1) as f64;
             let off = |factor: f64| (mass / factor / others).ln().abs();
             let (help, label) = if off(1000.0) < off(10.0) {
-                (format!("masses are in kg; if this is in g, write {}", short(mass / 1000.0)), "in g?")
+                (in_text("masses are in kg", "g", written_as(expression, 1000, context)), "in g?")
             } else {
-                (format!("if a point has slipped, write {}", short(mass / 10.0)), "ten times off?")
+                let text = written_as(expression, 10, context);
+                (
+                    text.map_or_else(|| "masses are in kg".to_owned(), |text| format!("if a point has slipped, write {text}")),
+                    "ten times off?",
+                )
             };
             context.report(Code::OutlyingMass, span, message, label, help);
             return true;
@@ -383,7 +442,7 @@ impl Arm<'_> {
                 short(mass),
                 short((mass / total).round())
             );
-            let help = format!("masses are in kg; if this is in g, write {}", short(mass / 1e3));
+            let help = in_text("masses are in kg", "g", written_as(expression, 1000, context));
             context.report(Code::ImplausibleMass, span, message, "in g?", help);
         }
         let farthest = self.reach + self.strokes.iter().sum::<f64>();
@@ -413,13 +472,24 @@ impl Arm<'_> {
                     format!("write what the data sheet says: no body of {} kg in that span has more than {most}", short(mass));
                 (Code::PlaceholderInertia, "a placeholder?".to_owned(), help)
             } else {
-                let slips = likely_units(|factor| gyration / factor.sqrt(), 0.2 * span);
-                let words: Vec<&str> = slips.iter().map(|(_, slip)| *slip).collect();
-                let meant =
-                    slips.iter().map(|(factor, slip)| format!("if this is {slip}, {} would be meant", short(largest / factor)));
-                let meant = meant.collect::<Vec<_>>().join("; ");
-                let help = format!("inertias are in kg m², about the centre of mass; {meant}");
-                (Code::ImplausibleInertia, format!("{}?", words.join(" or ")), help)
+                let (label, meant) = match likely_tensors(inertia, mass, span, context) {
+                    units if units.is_empty() => match single_slip(inertia, mass, span, context) {
+                        Some((name, text)) => {
+                            ("a decimal place off?".to_owned(), format!("if a point has slipped, write `{name}: {text}`"))
+                        }
+                        None => (
+                            "too large".to_owned(),
+                            format!("no single slip explains it: check this tensor and the mass, {} kg", short(mass)),
+                        ),
+                    },
+                    units => {
+                        let words: Vec<String> = units.iter().map(|(unit, _)| format!("in {unit}")).collect();
+                        let meant: Vec<String> =
+                            units.iter().map(|(unit, text)| format!("if this is in {unit}, write {text}")).collect();
+                        (format!("{}?", words.join(" or ")), meant.join("; "))
+                    }
+                };
+                (Code::ImplausibleInertia, label, format!("inertias are in kg m², about the centre of mass; {meant}"))
             };
             context.report(code, inertia.key, message, label, help);
         }
@@ -456,45 +526,6 @@ impl Arm<'_> {
         let part = |i: usize| self.lengths.get(i).unwrap_or(&0.0) + self.strokes.get(i).unwrap_or(&0.0);
         part(i) + part(i + 1) + 2.0 * com + HOUSING
     }
-
-    fn check_motor(&self, joint: &JointDescription, called: &str, context: &mut Context<'_>) {
-        let Some(motor) = &joint.motor else { return };
-        let ratio = motor.ratio.as_ref().map_or(1.0, |ratio| context.number(ratio).map_or(1.0, |number| number.to_f64())).abs();
-        if let (true, Some(expression)) = (ratio > 0.0 && ratio < LEAST_RATIO, &motor.ratio) {
-            let span = written(expression, context);
-            let message =
-                format!("the gear of joint {called} would make the joint {} times as fast as the rotor", short(1.0 / ratio));
-            let help = format!("`ratio` is rotor speed over joint speed; if this is the inverse, write {}", short(1.0 / ratio));
-            context.report(Code::InvertedRatio, span, message, "inverted?", help);
-            return;
-        }
-        let (Some(expression), inertia) = (&motor.inertia, number(&motor.inertia, context)) else { return };
-        let total: f64 = self.masses.iter().sum();
-        let turns = joint.kind.as_ref().is_some_and(|kind| kind.value == JointKind::Revolute);
-        let (reach, unit) = if turns { (self.reach, "kg m²") } else { (1.0, "kg") };
-        let whole = total * reach * reach;
-        let reflected = inertia * ratio * ratio;
-        if whole > 0.0 && self.reach > SMALL_REACH && ratio > 1.0 && reflected > REFLECTED * whole {
-            let span = written(expression, context);
-            let message = format!(
-                "the rotor of joint {called} counts as {} {unit} at the joint, ratio² times its inertia; the whole arm at its reach is {} {unit}",
-                short(reflected),
-                short(whole)
-            );
-            // Of the units that data sheets of motors have, those with which it is a rotor of an arm.
-            let units = UNITS_OF_INERTIA.iter().filter(|(_, unit)| ["in kg cm²", "in g cm²"].contains(unit));
-            let fit = |factor: f64| reflected / factor <= REFLECTED * whole;
-            let meant: String = units
-                .filter(|(factor, unit)| fit(*factor) || *unit == "in g cm²")
-                .map(|(factor, unit)| format!("; if it is {unit}, write {}", short(inertia / factor)))
-                .collect();
-            let help = format!(
-                "give the inertia before the gear in kg m²; if this is the one at the joint, write {}{meant}",
-                short(inertia / (ratio * ratio))
-            );
-            context.report(Code::ReflectedRotor, span, message, "reflected already?", help);
-        }
-    }
 }
 
 /// How far the centre of mass of a body is from its frame; `None` where it is farther than the arm is long, which is told.
@@ -514,7 +545,10 @@ fn check_com(body: &Body<'_>, context: &mut Context<'_>) -> Option<f64> {
         format!("the centre of mass of {whose} is {} m from its frame, and the arm is {} m long", short(com), short(*farthest));
     let slips = [(1e3, "in mm"), (1e2, "in cm"), (10.0, "a decimal place off")];
     let (factor, slip) = likeliest(&slips, |factor| com / factor, 0.2 * farthest);
-    let help = format!("if this is {slip}, {} m would be meant; it counts from the {frame}'s frame", short(com / factor));
+    let texts: Option<Vec<String>> =
+        given.value.iter().map(|value| value.as_ref().and_then(|value| written_as(value, factor as u64, context))).collect();
+    let meant = texts.map_or(String::new(), |texts| format!("if this is {slip}, write [{}]; ", texts.join(", ")));
+    let help = format!("{meant}it counts from the {frame}'s frame");
     context.report(Code::ImplausibleCom, given.span, message, format!("{slip}?"), help);
     None
 }
@@ -525,121 +559,10 @@ fn likeliest<'s>(slips: &[(f64, &'s str)], value: impl Fn(f64) -> f64, usual: f6
     slips.iter().copied().min_by(|a, b| off(a).total_cmp(&off(b))).unwrap_or((1.0, "a decimal place off"))
 }
 
-/// Units of inertias, and a slipped point, by the factor that they make it too large.
-const UNITS_OF_INERTIA: [(f64, &str); 5] =
-    [(10.0, "a decimal place off"), (1e4, "in kg cm²"), (1e6, "in kg mm²"), (1e7, "in g cm²"), (1e9, "in g mm²")];
+/// Units of inertias, by the factor that they make one too large.
+const UNITS_OF_INERTIA: [(f64, &str); 4] = [(1e4, "in kg cm²"), (1e6, "in kg mm²"), (1e7, "in g cm²"), (1e9, "in g mm²")];
 /// As far off the usual, in a radius of gyration, that a unit can still be meant: kg mm² and g cm² are a factor of √10 apart.
 const AS_LIKELY: f64 = 4.0;
-
-/// The unit with which a radius of gyration comes nearest to what would be usual, and the other one with which it comes near, too.
-fn likely_units(value: impl Fn(f64) -> f64, usual: f64) -> Vec<(f64, &'static str)> {
-    let off = |slip: &(f64, &str)| (value(slip.0) / usual).ln().abs();
-    let mut slips = UNITS_OF_INERTIA.to_vec();
-    slips.sort_by(|a, b| off(a).total_cmp(&off(b)));
-    let near = slips.iter().skip(1).take_while(|slip| off(slip) < AS_LIKELY.ln()).count();
-    slips.truncate(1 + near.min(1));
-    slips
-}
-
-fn check_effort(joint: &JointDescription, called: &str, context: &mut Context<'_>) {
-    let Some(expression) = &joint.limits.effort else { return };
-    let effort = number(&joint.limits.effort, context);
-    let (coulomb, offset) = (number(&joint.friction.coulomb, context), number(&joint.friction.offset, context));
-    let dry = coulomb + offset.abs();
-    if effort > 0.0 && dry >= effort {
-        let span = written(expression, context);
-        let turns = joint.kind.as_ref().is_some_and(|kind| kind.value == JointKind::Revolute);
-        let unit = if turns { "N m" } else { "N" };
-        let way = match coulomb - offset.abs() < effort {
-            true if offset > 0.0 => " forwards",
-            true => " backwards",
-            false => "",
-        };
-        let message = format!(
-            "joint {called} cannot move{way}: its dry friction of {} {unit} takes all of its effort limit of {} {unit}",
-            short(dry),
-            short(effort)
-        );
-        let help = "both count at the joint, behind the gear: a motor's torque is to be multiplied by `ratio`";
-        context.report(Code::WeakEffort, span, message, "no more than friction", help);
-    }
-}
-
-fn check_velocity(joint: &JointDescription, called: &str, context: &mut Context<'_>) {
-    let Some(expression) = &joint.limits.velocity else { return };
-    let velocity = number(&joint.limits.velocity, context);
-    let turns = joint.kind.as_ref().is_some_and(|kind| kind.value == JointKind::Revolute);
-    let span = written(expression, context);
-    if turns && velocity > FASTEST_TURN {
-        let text = context.source.slice(span).to_owned();
-        let message =
-            format!("the velocity limit of joint {called} is {} rad/s: no joint of an arm turns as fast", short(velocity));
-        let help = format!(
-            "rates are in rad/s; if this is in degrees per second, write `deg({text})`, which is {}",
-            short(velocity.to_radians())
-        );
-        context.report(Code::ImplausibleVelocity, span, message, "in degrees per second?", help);
-    } else if !turns && is_in_degrees(expression, context) {
-        let message = format!("the velocity limit of joint {called} is an angle in degrees per second, and the joint slides");
-        let help = "rates of a prismatic joint are in m/s; see whether the joint is `revolute`";
-        context.report(Code::DegreesSuspected, span, message, "an angle?", help);
-    } else if !turns && velocity > FASTEST_SLIDE {
-        let message =
-            format!("the velocity limit of joint {called} is {} m/s: no joint of an arm slides as fast", short(velocity));
-        let help = format!("rates are in m/s; if this is in mm/s, write {}", short(velocity / 1e3));
-        context.report(Code::ImplausibleVelocity, span, message, "in mm/s?", help);
-    }
-}
-
-/// How many rates of each Stribeck velocity are looked at.
-const RATES: u32 = 64;
-/// After so many Stribeck velocities 1e-17 is left of its torque.
-const FADED: u32 = 40;
-
-/// Friction against the motion at a rate v is F_c - |F_0| + F_s exp(-v / v_s) + F_v v + F_3 v³ on the side that has less: it must not be negative up
-/// to the limit.
-fn check_friction(joint: &JointDescription, called: &str, context: &mut Context<'_>) {
-    let friction = &joint.friction;
-    let (coulomb, offset) = (number(&friction.coulomb, context), number(&friction.offset, context).abs());
-    let (cubic, viscous) = (number(&friction.cubic, context), number(&friction.viscous, context));
-    let ratio = joint.motor.as_ref().map_or(0.0, |motor| {
-        let ratio = motor.ratio.as_ref().and_then(|ratio| context.number(ratio)).map_or(1.0, |ratio| ratio.to_f64());
-        ratio * ratio * number(&motor.viscous, context)
-    });
-    let limit = joint.limits.velocity.as_ref().map(|_| number(&joint.limits.velocity, context));
-    let stribeck = friction.stribeck.as_ref();
-    let (torque, fade) = stribeck.map_or((0.0, 1.0), |s| (number(&s.torque, context), number(&s.velocity, context)));
-    let at = |v: f64| coulomb - offset + torque * (-v / fade).exp() + (viscous + ratio) * v + cubic * v.powi(3);
-    // Only what fades can make up for the offset at rest and leave the joint driven later.
-    let mut rates = (0..=FADED * RATES).map(|k| fade * f64::from(k) / f64::from(RATES));
-    let driven_at = rates.find(|v| limit.is_none_or(|limit| *v <= limit) && at(*v) < 0.0).filter(|_| offset > coulomb);
-    if let (Some(v), Some(expression)) = (driven_at, &friction.offset) {
-        let span = written(expression, context);
-        let (offset, coulomb) = (short(offset), short(coulomb));
-        let message = if v == 0.0 {
-            format!("the friction of joint {called} drives it at low rates: its offset of {offset} is more than its Coulomb friction of {coulomb}")
-        } else {
-            let v = short(v);
-            format!("the friction of joint {called} drives it at {v}, where its Stribeck friction has faded: its offset of {offset} is more than its Coulomb friction of {coulomb}")
-        };
-        let help =
-            "Coulomb friction is coulomb + offset forwards and coulomb - offset backwards; see whether the two are exchanged";
-        context.report(Code::ActiveFriction, span, message, "more than `coulomb`", help);
-        return;
-    }
-    let Some(expression) = friction.cubic.as_ref().filter(|_| cubic < 0.0) else { return };
-    // With F_3 < 0 it is concave in v but for what fades, and least at an end.
-    let (driven, where_) = match limit {
-        Some(limit) => (at(limit) < 0.0, format!("at its velocity limit, {}", short(limit))),
-        None => (true, "at high rates, and it has no velocity limit".to_owned()),
-    };
-    if driven {
-        let span = written(expression, context);
-        let message = format!("the friction of joint {called} drives it {where_}: cubic friction below 0 outweighs the rest");
-        let help = "give the velocity limit up to which friction was measured, or leave `cubic` out";
-        context.report(Code::ActiveFriction, span, message, "drives the joint", help);
-    }
-}
 
 /// Four digits.
 fn short(value: f64) -> String {

@@ -318,7 +318,7 @@ fn terms_are_counted_over_all_values() {
     (0..MAX_PARAMETERS - 101).for_each(|i| parameters += &format!("  t{i}: s + {i}\n"));
     let last = format!("t{}", MAX_PARAMETERS - 102);
     let text = arm(&[("parameters: {}\n", &parameters), ("mass: 2", &format!("mass: {last}"))]);
-    let (_, diagnostics) = read(&Source::new("robot.yaml", text));
+    let (_, diagnostics) = structure(&Source::new("robot.yaml", text), Scalar::F64).finish();
     assert_eq!(diagnostics.iter().filter(|d| d.code == Code::TooComplex).count(), 1);
 }
 
@@ -469,4 +469,89 @@ fn warnings_can_be_allowed() {
     assert_eq!(count(&text), 1);
     assert_eq!(count(&format!("{text}\nallow: [implausible-gravity]\n")), 0);
     assert_eq!(count(&format!("{text}\nallow: [dust]\n")), 1);
+}
+
+/// Every key with a unit, in units and in SI: the same arm, to the last digit. The value 7 is drawn out by another factor at each key.
+#[test]
+fn values_in_units_are_those_in_si_exactly() {
+    let arm = |units: &str, [length, angle, mass, inertia, rotor, rate, torque, speed, force]: [&str; 9], sign: &str| {
+        let body = |com: &str| {
+            format!(
+                "{{mass: {mass}, com: [{com}, 0, 0], inertia: {{xx: {inertia}, yy: {inertia}, zz: {inertia}, xy: {sign}{inertia}/9, rpy: [{angle}, 0, 0]}}}}"
+            )
+        };
+        format!(
+            "name: arm\nconvention: standard\ngravity: [0, 0, -9.81]\n{units}base: {{xyz: [{length}, 0, 0], rpy: [0, {angle}, 0]}}\njoints:\n  \
+             - {{name: j, type: revolute, a: {length}, alpha: {angle}, d: {length}, theta: {angle}, link: {j}, armature: {rotor}, \
+             limits: {{position: [-{angle}, {angle}], velocity: {rate}, effort: {torque}}}, \
+             motor: {{ratio: 7, inertia: {rotor}, mass: {mass}, position: [{length}, 0, 0], axis: [0, 7, 0], viscous: {torque}}}, \
+             friction: {{viscous: {torque}, coulomb: {torque}, offset: {torque}, cubic: {torque}, load: 7, stribeck: {{torque: {torque}, velocity: {rate}}}}}, \
+             spring: {{stiffness: {torque}, rest: {angle}}}}}\n  \
+             - {{name: s, type: prismatic, a: 0, alpha: 0, d: 0, theta: 0, link: {j}, armature: {mass}, \
+             limits: {{position: [-{length}, {length}], velocity: {speed}, effort: {force}}}, \
+             friction: {{viscous: {force}, coulomb: {force}, stribeck: {{torque: {force}, velocity: {speed}}}}}, \
+             spring: {{stiffness: {force}, rest: {length}}}}}\n\
+             tool: {{xyz: [0, {length}, 0], axis: [0, 1, 0], angle: {angle}}}\npayload: {j}\n",
+            j = body(length)
+        )
+    };
+    let shown = |text: &str| format!("{:?}", valid(text).0);
+    let units = "units: {length: mm, angle: deg, mass: lb, inertia: g mm^2, rotor_inertia: kg cm², angular_velocity: rpm, torque: lbf in, \
+                 velocity: cm/s, force: mN}\n";
+    let si = ["0.007", "deg(7)", "(7*0.45359237)", "(7*1e-9)", "0.0007", "deg(42)", "(7*0.1129848290276167)", "0.07", "0.007"];
+    assert_eq!(shown(&arm(units, ["7"; 9], "")), shown(&arm("", si, "")));
+    // Rates follow lengths and angles; integrals have the other sign.
+    let of_lengths = ["0.007", "deg(7)", "7", "7", "7", "deg(7)", "7", "0.007", "7"];
+    assert_eq!(shown(&arm("units: {length: mm, angle: deg}\n", ["7"; 9], "")), shown(&arm("", of_lengths, "")));
+    assert_eq!(shown(&arm("products: integral\n", ["7"; 9], "")), shown(&arm("", ["7"; 9], "-")));
+    assert_eq!(shown(&arm("products: tensor\n", ["7"; 9], "")), shown(&arm("", ["7"; 9], "")));
+}
+
+/// An expression is in the unit as a whole; angles that say radians keep them, and no sum has both.
+#[test]
+fn expressions_are_in_the_unit_as_a_whole() {
+    let with = |edits: &[(&str, &str)]| {
+        let units = [("parameters: {}", "units: {length: mm, angle: deg}\nparameters: {l: 200, t: pi/2, w: 90}")];
+        arm(&[&units, edits].concat())
+    };
+    let joint = only(&with(&[
+        ("a: 0.5", "a: 300/2 + l"),
+        ("d: 0.25", "d: sqrt(2)"),
+        ("theta: 0", "theta: w"),
+        ("alpha: pi/2", "alpha: -t"),
+    ]));
+    let si = only(&arm(&[
+        ("a: 0.5", "a: 0.35"),
+        ("d: 0.25", "d: sqrt(2)/1000"),
+        ("theta: 0", "theta: pi/2"),
+        ("alpha: pi/2", "alpha: -pi/2"),
+    ]));
+    assert_eq!(format!("{:?}", joint.link_frame.rotation), format!("{:?}", si.link_frame.rotation));
+    assert_eq!(format!("{:?}", joint.placement.rotation), format!("{:?}", si.placement.rotation));
+    assert_eq!(joint.placement.translation[2].as_number(), si.placement.translation[2].as_number());
+    for alpha in ["w + t", "90 - pi/2", "deg(5) + 5", "(t + 1)*2"] {
+        check(
+            &with(&[("alpha: pi/2", &format!("alpha: {alpha}")), ("theta: 0", "theta: w + 0*l"), ("a: 0.5", "a: l")]),
+            &[Code::MixedUnits],
+        );
+    }
+    check(&with(&[("alpha: pi/2", "alpha: t + 0"), ("theta: 0", "theta: deg(w)"), ("a: 0.5", "a: l")]), &[]);
+}
+
+/// What is suggested has every digit.
+#[test]
+fn suggestions_lose_no_digit() {
+    let helps = |text: &str| {
+        let (_, diagnostics) = structure(&Source::new("robot.yaml", text), Scalar::F64).finish();
+        diagnostics.iter().map(|d| d.help.clone()).collect::<Vec<_>>().join("\n")
+    };
+    assert!(helps(&arm(&[("a: 0.5", "a: 169.77123456789")])).contains("write 0.16977123456789"));
+    assert!(helps(&arm(&[("parameters: {}", "parameters: {l: 222.63}"), ("a: 0.5", "a: -l")])).contains("write 0.22263"));
+    assert!(helps(&arm(&[("a: 0.5", "a: 100 + 22.5")])).contains("write (100 + 22.5)/1000"));
+    let slipped = "{mass: 1.559, com: [0, -0.03, 0], inertia: {xx: 2661.9e-6, yy: 2302.5e-6, zz: 1676359e-6, xy: -31.029e-6, xz: 9.34e-6, yz: 151.466e-6}}";
+    assert!(helps(&arm(&[("{mass: 2}", slipped), ("a: 0.5", "a: 0.2")])).contains("write `zz: 0.001676359`"));
+    // Mass and tensor contradict each other: no single number is to blame.
+    let either = "{mass: 0.007, inertia: {xx: 0.00152112, yy: 0.00138626, zz: 0.00031152}}";
+    let said = helps(&arm(&[("{mass: 2}", either), ("a: 0.5", "a: 0.1"), ("d: 0.25", "d: 0")]));
+    assert!(said.contains("check this tensor and the mass") && !said.contains("write"), "{said}");
 }

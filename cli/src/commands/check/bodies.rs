@@ -91,10 +91,15 @@ fn small(value: f64, scale: f64) -> String {
     digits(if value.abs() < 1e-9 * scale { 0.0 } else { value })
 }
 
-/// One row per link, and one of the load, in two tables: mass and centre of mass, then what the inertia says. A link's moments stand in the order of
-/// its own axes, not of their size: two that were exchanged are seen in the sides of the box. `distances` are those of the links, as
-/// `posture::distances` gives them.
-pub(super) fn tables(manipulator: &Manipulator, distances: Vec<[Option<f64>; 2]>) -> String {
+/// The links with their bodies, and the load.
+fn carriers(manipulator: &Manipulator) -> impl Iterator<Item = (String, &[PlacedBody])> {
+    let links =
+        manipulator.joints.iter().enumerate().map(|(i, joint)| (format!("{} {}", i + 1, joint.name), joint.link.as_slice()));
+    links.chain(manipulator.payload.iter().map(|load| ("payload".into(), std::slice::from_ref(load))))
+}
+
+/// Mass and centre of mass, one row per link and one of the load. `distances` are those of the links, as `posture::distances` gives them.
+pub(super) fn masses(manipulator: &Manipulator, distances: &[[Option<f64>; 2]]) -> String {
     use Align::{Left, Point};
     let mut masses = Table::new([
         ("link", Left),
@@ -105,56 +110,66 @@ pub(super) fn tables(manipulator: &Manipulator, distances: Vec<[Option<f64>; 2]>
         (TO_ITS_AXIS, Point),
         (NEXT_AXIS, Point),
     ]);
+    let distances = distances.iter().copied().chain([[None; 2]]);
+    for ((name, parts), distances) in carriers(manipulator).zip(distances) {
+        let [to_axis, next] = distances.map(|distance| distance.map_or(String::new(), |x| small(x, 1.0)));
+        match Solid::of(manipulator, parts) {
+            None => masses.row([name, "0".into(), String::new(), String::new(), String::new(), to_axis, next]),
+            Some(solid) => {
+                let [x, y, z] = solid.com.data.0[0].map(digits);
+                masses.row([name, digits(solid.mass), x, y, z, to_axis, next]);
+            }
+        }
+    }
+    match manipulator.is_massless() {
+        true => masses.text(),
+        false => masses.text() + &of_masses(&masses, manipulator),
+    }
+}
+
+/// What the inertias say; none where nothing has mass. A link's moments stand in the order of its own axes, not of their size: two that were exchanged
+/// are seen in the sides of the box.
+pub(super) fn inertias(manipulator: &Manipulator) -> Option<String> {
+    use Align::{Left, Point};
     let mut inertias = Table::new([
         ("link", Left),
-        ("moment about x (kg m²)", Point),
+        ("I x (kg m²)", Point),
         ("y", Point),
         ("z", Point),
         (TURNED, Left),
-        ("radius of gyration (m)", Point),
-        ("box along x (m)", Point),
+        (GYRATION, Point),
+        ("box x (m)", Point),
         ("y", Point),
         ("z", Point),
         (DENSITY, Point),
     ]);
-    let links =
-        manipulator.joints.iter().enumerate().map(|(i, joint)| (format!("{} {}", i + 1, joint.name), joint.link.as_slice()));
-    let load = manipulator.payload.iter().map(|load| ("payload".into(), std::slice::from_ref(load)));
-    let distances = distances.into_iter().chain([[None; 2]]);
     let mut doubts: BTreeMap<&str, Vec<String>> = BTreeMap::new();
-    for ((name, parts), distances) in links.chain(load).zip(distances) {
-        let solid = Solid::of(manipulator, parts);
-        let [to_axis, next] = distances.map(|distance| distance.map_or(String::new(), |x| small(x, 1.0)));
-        let none = String::new;
-        let Some(solid) = solid else {
-            masses.row([name, "0".into(), none(), none(), none(), to_axis, next]);
-            continue;
-        };
-        let [x, y, z] = solid.com.data.0[0].map(digits);
-        masses.row([name.clone(), digits(solid.mass), x, y, z, to_axis, next]);
+    for (name, parts) in carriers(manipulator) {
+        let Some(solid) = Solid::of(manipulator, parts) else { continue };
         let (moments, turned) = solid.moments();
         let [xx, yy, zz] = moments.map(digits);
         let largest = moments.iter().copied().fold(0.0, f64::max);
-        let turned = if turned.norm() < LEAST_TURN { none() } else { turn(&turned) };
+        let turned = if turned.norm() < LEAST_TURN { String::new() } else { turn(&turned) };
         let [a, b, c] = sides(solid.mass, &moments);
         let density = density_of_cuboid(solid.mass, [moments[0], 0.0, moments[1], 0.0, 0.0, moments[2]]);
         if let Some(words) = density.and_then(doubt_of_density) {
             doubts.entry(words).or_default().push(name.clone());
         }
-        let density = density.map_or_else(none, |density| rounded(density).to_string());
+        let density = density.map_or_else(String::new, |density| rounded(density).to_string());
         inertias.row([name, xx, yy, zz, turned, short((largest / solid.mass).sqrt()), a, b, c, density]);
     }
     if manipulator.is_massless() {
-        return masses.text();
+        return None;
     }
     let doubts: String = doubts.into_iter().map(|(words, links)| format!("  {words}: {}\n", links.join(", "))).collect();
-    format!("{}{}\n{}{}{doubts}", masses.text(), of_masses(&masses, manipulator), inertias.text(), of_inertias(&inertias))
+    Some(inertias.text() + &of_inertias(&inertias) + &doubts)
 }
 
-const TO_ITS_AXIS: &str = "com to its axis (m)";
-const NEXT_AXIS: &str = "next axis to it (m)";
+const TO_ITS_AXIS: &str = "to its axis (m)";
+const NEXT_AXIS: &str = "next axis (m)";
 const TURNED: &str = "turned";
-const DENSITY: &str = "density (kg/m³)";
+const GYRATION: &str = "gyration (m)";
+const DENSITY: &str = "kg/m³";
 
 /// What the columns of the masses are.
 fn of_masses(masses: &Table, manipulator: &Manipulator) -> String {
@@ -165,8 +180,8 @@ fn of_masses(masses: &Table, manipulator: &Manipulator) -> String {
         } else {
             "com: in the link's own frame"
         },
-        if_shown(TO_ITS_AXIS, "its axis: that of the joint which moves the link"),
-        if_shown(NEXT_AXIS, "next axis: the next joint's, after the last link the end effector"),
+        if_shown(TO_ITS_AXIS, "to its axis: distance of the com from the axis of the joint that moves the link"),
+        if_shown(NEXT_AXIS, "next axis: distance from that axis to the next joint's, after the last link to the end effector"),
     ])
 }
 
@@ -175,10 +190,10 @@ fn of_inertias(inertias: &Table) -> String {
     let if_shown = |column: &str, words| if inertias.shows(column) { words } else { "" };
     legend(&[
         "principal moments about the centre of mass, each at the axis of the link's frame that it is nearest to",
-        if_shown(TURNED, "turned: from an axis of the frame to that of the moment next to it, at most"),
-        "radius of gyration: sqrt(I/m) of the largest moment",
+        if_shown(TURNED, "turned: angle between the link frame and the principal axes"),
+        "gyration: radius of gyration sqrt(I/m) of the largest moment",
         "box: the cuboid of even density that has these moments",
-        if_shown(DENSITY, "density: metal has up to 8000 kg/m³"),
+        if_shown(DENSITY, "kg/m³: the density of the box; metal has up to 8000 kg/m³"),
     ])
 }
 
@@ -221,7 +236,11 @@ pub(super) fn up(gravity: [f64; 3]) -> String {
     let along = format!("{sign}{}0", ["x", "y", "z"][axis]);
     let off = up.cross(&Vector3::ith(axis, 1.0)).norm().asin().to_degrees();
     if off < 1e-6 {
-        format!("{along} points up")
+        match (sign, axis) {
+            ("-", 2) => format!("{along} points up, so the arm hangs"),
+            ("", 2) => format!("{along} points up"),
+            _ => format!("{along} points up: z0 is horizontal"),
+        }
     } else {
         format!("up is {} off {along}", degrees(off))
     }
@@ -254,7 +273,8 @@ mod tests {
     #[test]
     fn gravity_is_said_in_words() {
         assert_eq!(up([0.0, 0.0, -9.81]), "z0 points up");
-        assert_eq!(up([0.0, 9.81, 0.0]), "-y0 points up");
+        assert_eq!(up([0.0, 0.0, 9.81]), "-z0 points up, so the arm hangs");
+        assert_eq!(up([0.0, 9.81, 0.0]), "-y0 points up: z0 is horizontal");
         assert_eq!(up([0.0; 3]), "none: the arm moves in a horizontal plane, or in free fall");
         assert_eq!(up([0.0, -9.81 * 0.5, -9.81 * 0.75f64.sqrt()]), "up is 30 degrees off z0");
     }

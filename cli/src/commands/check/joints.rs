@@ -1,11 +1,13 @@
 //! The rows of an arm as written, with the values of their names, and beside them what limits and drives its joints.
 
 use armgen_codegen::derive::parameters::{denavit_hartenberg, nominal};
-use armgen_codegen::description::{Convention, JointDescription, PoseDescription, RobotDescription, RotationDescription};
+use armgen_codegen::description::{
+    list_text, Convention, JointDescription, PoseDescription, RobotDescription, RotationDescription,
+};
 use armgen_codegen::exact::{Number, Polynomial};
 use armgen_codegen::kinds::JointKind;
 use armgen_codegen::manipulator::{Joint, Manipulator};
-use armgen_codegen::source::{Source, Span};
+use armgen_codegen::source::Source;
 
 use super::{decimal, digits};
 use crate::table::Align::{Left, Right};
@@ -52,7 +54,7 @@ pub(super) fn rows(source: &Source, description: &RobotDescription, manipulator:
 fn dh_row(source: &Source, row: &JointDescription, i: usize, manipulator: &Manipulator, modified: bool) -> [String; 4] {
     let joint = &manipulator.joints[i];
     let written = [&row.a, &row.alpha, &row.d, &row.theta];
-    let mut texts = written.map(|value| value.as_ref().map_or(String::new(), |v| in_one_line(source, v.span)));
+    let mut texts = written.map(|value| value.as_ref().map_or(String::new(), |v| in_one_line(&v.text(source))));
     let moved = &mut texts[if joint.kind == JointKind::Revolute { 3 } else { 2 }];
     *moved = match moved.strip_prefix('-') {
         _ if moved == "0" => format!("q{}", i + 1),
@@ -71,30 +73,32 @@ fn dh_row(source: &Source, row: &JointDescription, i: usize, manipulator: &Manip
 }
 
 /// What stands in the file, in one line, without comments.
-fn in_one_line(source: &Source, span: Span) -> String {
+fn in_one_line(text: &str) -> String {
     let words = |line: &'_ str| -> Vec<String> {
         line.split_whitespace().take_while(|word| !word.starts_with('#')).map(str::to_owned).collect()
     };
-    source.slice(span).lines().flat_map(words).collect::<Vec<_>>().join(" ")
+    text.lines().flat_map(words).collect::<Vec<_>>().join(" ")
 }
 
 /// The origin and the axis, as written.
 fn urdf_row(source: &Source, row: &JointDescription) -> [String; 2] {
-    let axis = row.axis.as_ref().map_or(String::new(), |axis| in_one_line(source, axis.span));
+    let axis = row.axis.as_ref().map_or(String::new(), |axis| in_one_line(source.slice(axis.span)));
     [row.origin.as_ref().map_or(String::new(), |origin| pose(source, origin)), axis]
 }
 
 /// A pose as written: translations by their numbers alone, rotations after their key.
 fn pose(source: &Source, pose: &PoseDescription) -> String {
-    let slice = |span| in_one_line(source, span);
+    let slice = |span| in_one_line(source.slice(span));
     let elements = pose.elements.iter().map(|element| {
         let rotation = element.rotation.as_ref().map(|rotation| match rotation {
-            RotationDescription::Rpy(angles) => format!("rpy {}", slice(angles.span)),
+            RotationDescription::Rpy(angles) => format!("rpy {}", in_one_line(&list_text(angles, source))),
             RotationDescription::Quat(quaternion) => format!("quat {}", slice(quaternion.span)),
-            RotationDescription::AxisAngle(axis, angle) => format!("axis {} angle {}", slice(axis.span), slice(angle.span)),
+            RotationDescription::AxisAngle(axis, angle) => {
+                format!("axis {} angle {}", slice(axis.span), in_one_line(&angle.text(source)))
+            }
             RotationDescription::XyAxes(axes) => format!("xyaxes {}", slice(axes.span)),
         });
-        let translation = element.xyz.as_ref().map(|xyz| slice(xyz.span));
+        let translation = element.xyz.as_ref().map(|xyz| in_one_line(&list_text(xyz, source)));
         translation.into_iter().chain(rotation).collect::<Vec<_>>().join(" ")
     });
     elements.filter(|text| !text.is_empty()).collect::<Vec<_>>().join(", ")

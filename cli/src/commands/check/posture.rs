@@ -172,28 +172,36 @@ pub(super) fn distances(manipulator: &Manipulator) -> Vec<[Option<f64>; 2]> {
     (0..manipulator.dof()).map(of).collect()
 }
 
-/// The frames of the links at q = 0, then what they carry.
-pub(super) fn tables(manipulator: &Manipulator) -> String {
-    use Align::{Left, Right};
+/// The frames of the links at q = 0.
+pub(super) fn frames(manipulator: &Manipulator) -> String {
+    use Align::Left;
     let posture = Posture::at_zero(manipulator);
     let mut frames = Table::new([
-        ("at q = 0, in the base frame", Left),
+        ("at q = 0", Left),
         ("joint axis", Left),
         ("link frame at (m)", Left),
         ("its x axis", Left),
         ("its z axis", Left),
     ]);
-    let mut weak = Vec::new();
     let mut row = |name: String, axis: String, frame: &Isometry3<f64>| {
         let along = |axis: Unit<Vector3<f64>>| direction(&(frame * axis));
         frames.row([name, axis, point(&frame.translation.vector), along(Vector3::x_axis()), along(Vector3::z_axis())]);
     };
-    let mut carried =
-        Table::new([("at q = 0, in the base frame", Left), ("centre of mass at (m)", Left), ("held against gravity", Right)]);
     row("base frame".into(), String::new(), &Isometry3::identity());
     for (i, (joint, axis)) in manipulator.joints.iter().zip(&posture.axes).enumerate() {
-        let name = format!("{} {}", i + 1, joint.name);
-        row(name.clone(), direction(&axis.direction), &posture.links[i]);
+        row(format!("{} {}", i + 1, joint.name), direction(&axis.direction), &posture.links[i]);
+    }
+    row("end effector".into(), String::new(), &posture.flange);
+    frames.text() + "  all in the base frame\n"
+}
+
+/// Where the axes and centres of mass are at q = 0, and what gravity asks of each joint; none where nothing has mass.
+pub(super) fn carried(manipulator: &Manipulator) -> Option<String> {
+    use Align::{Left, Right};
+    let posture = Posture::at_zero(manipulator);
+    let mut carried = Table::new([("at q = 0", Left), ("joint axis", Left), ("centre of mass (m)", Left), ("gravity", Right)]);
+    let mut weak = Vec::new();
+    for (i, (joint, axis)) in manipulator.joints.iter().zip(&posture.axes).enumerate() {
         let unit = if joint.kind == JointKind::Revolute { "N m" } else { "N" };
         let held = posture.gravity(manipulator, i);
         // As small as what sums of such numbers round by.
@@ -202,20 +210,28 @@ pub(super) fn tables(manipulator: &Manipulator) -> String {
             weak.push(format!("{} ({} {unit})", joint.name, short(effort)));
         }
         carried.row([
-            name,
+            format!("{} {}", i + 1, joint.name),
+            direction(&axis.direction),
             posture.of_link(manipulator, i).map_or(String::new(), |(_, com)| point(&com.coords)),
             if manipulator.is_massless() { String::new() } else { format!("{} {unit}", short(held)) },
         ]);
     }
-    row("end effector".into(), String::new(), &posture.flange);
+    carried.row([
+        "end effector".into(),
+        String::new(),
+        format!("at {}", point(&posture.flange.translation.vector)),
+        String::new(),
+    ]);
+    let held = match manipulator.is_massless() {
+        true => "",
+        false => "; gravity: the torque or force that the motor must give to hold this posture, springs excluded",
+    };
+    let legend = super::legend(&[format!("in the base frame{held}").as_str()]);
     let weak = match weak.is_empty() {
         true => String::new(),
         false => format!("  that is more than the effort limit of {}\n", weak.join(", ")),
     };
-    let held =
-        "  held against gravity: along the joint's axis, as the joint gives it to stand still, without what springs hold\n";
-    let carried = if manipulator.is_massless() { String::new() } else { format!("\n{}{held}{weak}", carried.text()) };
-    frames.text() + &outside(manipulator) + &carried
+    Some(carried.text() + &legend + &weak + &outside(manipulator))
 }
 
 /// A line where the posture is outside the limits of joints.
@@ -264,7 +280,7 @@ mod tests {
         let posture = Posture::at_zero(&manipulator);
         assert!((posture.gravity(&manipulator, 0) - 20.0).abs() < 1e-12);
         assert!((posture.gravity(&manipulator, 1) - 10.0).abs() < 1e-12);
-        let text = tables(&manipulator);
+        let text = carried(&manipulator).expect("a table");
         assert!(text.contains("2 h") && text.contains("-y0") && text.contains("10 N m"), "{text}");
         assert!(text.contains("end effector") && text.contains("(1, 0, 0.25)"), "{text}");
     }
@@ -274,7 +290,7 @@ mod tests {
     fn an_effort_limit_below_what_is_held_is_said() {
         let of = |effort: &str| {
             let link = "link: {mass: 1, inertia: {xx: 1, yy: 1, zz: 1}}";
-            tables(&arm(&format!("name: a\nconvention: standard\ngravity: [0, -10, 0]\njoints:\n  - {{name: elbow, type: revolute, a: 1, alpha: 0, d: 0, theta: 0, {link}, limits: {{effort: {effort}}}}}\n")))
+            carried(&arm(&format!("name: a\nconvention: standard\ngravity: [0, -10, 0]\njoints:\n  - {{name: elbow, type: revolute, a: 1, alpha: 0, d: 0, theta: 0, {link}, limits: {{effort: {effort}}}}}\n"))).expect("a table")
         };
         assert!(of("9").ends_with("\n  that is more than the effort limit of elbow (9 N m)\n"), "{}", of("9"));
         assert!(!of("11").contains("effort"));
@@ -284,7 +300,7 @@ mod tests {
     fn a_posture_outside_the_limits_is_said_to_be() {
         let of = |limits: &str| {
             let row = "type: revolute, a: 1, alpha: 0, d: 0, theta: 0, link: {mass: 1}";
-            tables(&arm(&format!("name: a\nconvention: standard\ngravity: [0, 0, -10]\njoints:\n  - {{name: elbow, {row}, limits: {{position: {limits}}}}}\n")))
+            carried(&arm(&format!("name: a\nconvention: standard\ngravity: [0, 0, -10]\njoints:\n  - {{name: elbow, {row}, limits: {{position: {limits}}}}}\n"))).expect("a table")
         };
         assert!(of("[1, 2]").contains("\n  q = 0 is outside the limits of elbow\n"));
         assert!(!of("[0, 2]").contains("outside"));

@@ -1,4 +1,6 @@
-//! Units behind numbers, where values have none: what the number would be in SI units.
+//! Units: those that a file names for its values, and those behind numbers, where values have none.
+
+use crate::exact::Rational;
 
 /// How angles in degrees are written.
 pub(super) const DEGREES: &str = "write an angle in degrees as `deg(90)`";
@@ -14,6 +16,92 @@ enum To {
     Times(&'static str),
 }
 
+/// A unit: so many of the SI unit, exactly; of an angle, so many degrees where it is not in radians.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Unit {
+    /// A decimal.
+    pub factor: Rational,
+    /// Whether the factor counts degrees.
+    pub degrees: bool,
+}
+
+impl Unit {
+    /// The unit that a text names, and the SI unit of its dimension.
+    pub fn named(text: &str) -> Option<(Unit, &'static str)> {
+        let name = squeezed(text);
+        let (_, to, si) = UNITS.iter().find(|(unit, ..)| *unit == name)?;
+        let (factor, degrees) = match to {
+            To::Power(power) => (power_of_ten(*power), false),
+            To::Degrees => (Rational::from(1), true),
+            // A turn per minute is 6 degrees per second.
+            To::Times("2*pi/60") => (Rational::from(6), true),
+            To::Times(factor) => (decimal(factor)?, false),
+        };
+        Some((Unit { factor, degrees }, si))
+    }
+
+    /// Whether it is the SI unit.
+    pub fn is_si(&self) -> bool {
+        !self.degrees && self.factor == Rational::from(1)
+    }
+
+    /// The same with the other sign.
+    #[must_use]
+    pub fn negated(self) -> Unit {
+        Unit { factor: -self.factor, degrees: self.degrees }
+    }
+
+    /// In floating point.
+    pub fn to_f64(&self) -> f64 {
+        let factor = self.factor.to_f64().value();
+        if self.degrees {
+            factor.to_radians()
+        } else {
+            factor
+        }
+    }
+}
+
+fn power_of_ten(power: i32) -> Rational {
+    let scale = Rational::from(10u8).pow(power.unsigned_abs() as isize);
+    if power < 0 {
+        Rational::from(1) / scale
+    } else {
+        scale
+    }
+}
+
+/// The value of digits with a point.
+fn decimal(text: &str) -> Option<Rational> {
+    let (digits, power) = text.split_once('e').unwrap_or((text, "0"));
+    let (whole, fraction) = digits.split_once('.').unwrap_or((digits, ""));
+    let value: Rational = format!("{whole}{fraction}").parse().ok()?;
+    Some(value * power_of_ten(power.parse::<i32>().ok()? - i32::try_from(fraction.len()).ok()?))
+}
+
+/// Digits of a decimal that is written out.
+const MAX_WRITTEN: usize = 30;
+
+/// A number as a decimal with all its digits, if it has few enough.
+pub fn decimal_text(value: &Rational) -> Option<String> {
+    let ten = Rational::from(10u8);
+    let mut scaled = value.clone();
+    for digits in 0..=MAX_WRITTEN {
+        if scaled.is_int() {
+            let text = scaled.numerator().to_string();
+            let (sign, whole) = text.strip_prefix('-').map_or(("", text.as_str()), |rest| ("-", rest));
+            if whole.len() > MAX_WRITTEN {
+                return None;
+            }
+            let padded = format!("{whole:0>width$}", width = digits + 1);
+            let (before, after) = padded.split_at(padded.len() - digits);
+            return Some(if after.is_empty() { format!("{sign}{before}") } else { format!("{sign}{before}.{after}") });
+        }
+        scaled *= &ten;
+    }
+    None
+}
+
 /// Units as [`squeezed`] has them, and the SI units that they become.
 const UNITS: &[(&str, To, &str)] = &[
     ("m", To::Power(0), "m"),
@@ -23,6 +111,7 @@ const UNITS: &[(&str, To, &str)] = &[
     ("µm", To::Power(-6), "m"),
     ("in", To::Times("0.0254"), "m"),
     ("inch", To::Times("0.0254"), "m"),
+    ("ft", To::Times("0.3048"), "m"),
     ("kg", To::Power(0), "kg"),
     ("g", To::Power(-3), "kg"),
     ("t", To::Power(3), "kg"),
@@ -41,26 +130,28 @@ const UNITS: &[(&str, To, &str)] = &[
     ("°", To::Degrees, "rad"),
     ("N", To::Power(0), "N"),
     ("kN", To::Power(3), "N"),
+    ("mN", To::Power(-3), "N"),
     ("kgf", To::Times("9.80665"), "N"),
-    ("lbf", To::Times("4.4482216"), "N"),
+    ("lbf", To::Times("4.4482216152605"), "N"),
     ("Nm", To::Power(0), "N m"),
     ("kNm", To::Power(3), "N m"),
     ("Ncm", To::Power(-2), "N m"),
     ("mNm", To::Power(-3), "N m"),
+    ("Nmm", To::Power(-3), "N m"),
     ("kgm", To::Times("9.80665"), "N m"),
     ("kgfm", To::Times("9.80665"), "N m"),
     ("kgcm", To::Times("0.0980665"), "N m"),
     ("kgfcm", To::Times("0.0980665"), "N m"),
     ("gcm", To::Times("9.80665e-5"), "N m"),
     ("gfcm", To::Times("9.80665e-5"), "N m"),
-    ("ozin", To::Times("0.007061552"), "N m"),
-    ("ozfin", To::Times("0.007061552"), "N m"),
-    ("lbin", To::Times("0.1129848"), "N m"),
-    ("lbfin", To::Times("0.1129848"), "N m"),
-    ("inlb", To::Times("0.1129848"), "N m"),
-    ("lbft", To::Times("1.355818"), "N m"),
-    ("lbfft", To::Times("1.355818"), "N m"),
-    ("ftlb", To::Times("1.355818"), "N m"),
+    ("ozin", To::Times("0.00706155181422604375"), "N m"),
+    ("ozfin", To::Times("0.00706155181422604375"), "N m"),
+    ("lbin", To::Times("0.1129848290276167"), "N m"),
+    ("lbfin", To::Times("0.1129848290276167"), "N m"),
+    ("inlb", To::Times("0.1129848290276167"), "N m"),
+    ("lbft", To::Times("1.3558179483314004"), "N m"),
+    ("lbfft", To::Times("1.3558179483314004"), "N m"),
+    ("ftlb", To::Times("1.3558179483314004"), "N m"),
     ("N/m", To::Power(0), "N/m"),
     ("N/mm", To::Power(3), "N/m"),
     ("Nm/rad", To::Power(0), "N m/rad"),
@@ -70,14 +161,19 @@ const UNITS: &[(&str, To, &str)] = &[
     ("kgm2", To::Power(0), "kg m²"),
     ("kgcm2", To::Power(-4), "kg m²"),
     ("kgmm2", To::Power(-6), "kg m²"),
+    ("gm2", To::Power(-3), "kg m²"),
+    ("lbin2", To::Times("0.0002926396534292"), "kg m²"),
+    ("lbft2", To::Times("0.0421401100938048"), "kg m²"),
     ("gcm2", To::Power(-7), "kg m²"),
     ("gmm2", To::Power(-9), "kg m²"),
     ("m/s", To::Power(0), "m/s"),
     ("mm/s", To::Power(-3), "m/s"),
+    ("cm/s", To::Power(-2), "m/s"),
     ("m/s2", To::Power(0), "m/s²"),
     ("rad/s", To::Power(0), "rad/s"),
     ("deg/s", To::Degrees, "rad/s"),
     ("°/s", To::Degrees, "rad/s"),
+    ("degs/s", To::Degrees, "rad/s"),
     ("rpm", To::Times("2*pi/60"), "rad/s"),
     ("Hz", To::Power(0), "1/s"),
     ("kHz", To::Power(3), "1/s"),

@@ -5,9 +5,12 @@
 //! | `coincident-axes` | two revolute joints, one after the other, that turn about one line | no arm spends two motors on one motion; angles of the standard convention in rows of the modified one, or the other way round, leave such a pair |
 //! | `inertia-about-frame` | a tensor with the products of inertia -m c_i c_j of its own centre of mass c, and moments to match | that is the tensor about the frame's origin of a body whose own axes are those of the frame (Steiner; Siciliano et al., Eq. B.67); armgen adds Steiner's terms itself |
 
-use super::{number, short, Arm, Body};
-use crate::description::{Convention, JointDescription};
+use super::slips::passes;
+use super::{number, Arm, Body};
+use crate::description::{Convention, JointDescription, Value, INERTIA_ELEMENTS};
 use crate::diagnostic::Code;
+use crate::document::{decimal_text, Expression, ExpressionKind};
+use crate::exact::Number;
 use crate::kinds::JointKind;
 use crate::validate::{call, Context};
 
@@ -78,7 +81,40 @@ pub(super) fn check_reference(body: &Body<'_>, context: &mut Context<'_>) {
         return;
     }
     let message = format!("the inertia of {whose} has the products -m c_i c_j of its own centre of mass: it seems to be about the origin of the frame");
-    let [xx, yy, zz] = own.map(short);
-    let help = format!("give it about the centre of mass: about {{xx: {xx}, yy: {yy}, zz: {zz}}}, its products nearly 0");
+    let help = match about_centre(body, context) {
+        Some(tensor) => format!("give it about the centre of mass: {tensor}"),
+        None => "give it about the centre of mass: less m (c'c 1 - c c')".to_owned(),
+    };
     context.report(Code::InertiaAboutFrame, inertia.key, message, "about the frame's origin?", help);
+}
+
+/// The tensor less Steiner's terms, exactly, where it is one of a body and its digits end: I - m (c'c 1 - c c').
+fn about_centre(body: &Body<'_>, context: &mut Context<'_>) -> Option<String> {
+    let number = |value: &Value, context: &mut Context<'_>| match value {
+        Some(Expression { kind: ExpressionKind::InUnit(..), .. }) => None,
+        Some(expression) => context.number(expression),
+        None => Some(Number::zero()),
+    };
+    let (com, inertia) = (body.description.com.as_ref()?, body.description.inertia.as_ref()?);
+    let m = number(&body.description.mass, context)?;
+    let [x, y, z] = com.value.each_ref().map(|value| number(value, context));
+    let c = [x?, y?, z?];
+    let product = |i: usize, j: usize| &m * &(&c[i] * &c[j]);
+    let moment = |i: usize, j: usize| &product(i, i) + &product(j, j);
+    let steiner = [moment(1, 2), -&product(0, 1), moment(0, 2), -&product(0, 2), -&product(1, 2), moment(0, 1)];
+    let mut own = Vec::new();
+    for (value, steiner) in inertia.elements.iter().zip(&steiner) {
+        own.push(&number(value, context)? - steiner);
+    }
+    let floats: [f64; 6] = own.iter().map(Number::to_f64).collect::<Vec<_>>().try_into().ok()?;
+    if !passes(&floats, body.mass, f64::INFINITY) {
+        return None;
+    }
+    let texts: Option<Vec<String>> = INERTIA_ELEMENTS
+        .iter()
+        .zip(&own)
+        .filter(|(_, element)| !element.is_zero())
+        .map(|(name, element)| Some(format!("{name}: {}", decimal_text(element.as_rational()?)?)))
+        .collect();
+    Some(format!("{{{}}}", texts?.join(", ")))
 }
