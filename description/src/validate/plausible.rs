@@ -359,7 +359,7 @@ impl Arm<'_> {
         let size =
             self.reach + self.joints.last().and_then(|joint| joint.link.as_ref()).map_or(0.0, |link| extent(link, context));
         // Where lengths are in mm they are told of, and masses may be in g as well.
-        let in_mm = context.diagnostics.iter().any(|diagnostic| diagnostic.code == Code::ImplausibleReach);
+        let in_mm = self.lengths.iter().any(|length| *length > LONGEST);
         let size = if in_mm && size > LONGEST { size / 1e3 } else { size };
         if self.reach > SMALL_REACH && total > MASS_PER_CUBE * size.powi(3) {
             let message = format!(
