@@ -13,6 +13,7 @@ fn printed(e: &Expression) -> String {
         ExpressionKind::Negate(a) => format!("(-{})", printed(a)),
         ExpressionKind::Degrees(a) => format!("deg({})", printed(a)),
         ExpressionKind::Root(a) => format!("sqrt({})", printed(a)),
+        ExpressionKind::InUnit(..) => unreachable!("a text names no unit"),
         ExpressionKind::Binary(operator, a, b) => {
             let sign = match operator {
                 Operator::Add => '+',
