@@ -385,7 +385,7 @@ fn documentation_that_runs_is_refused() {
     doc("/// ```no_run\n/// std::process::exit(1)\n/// ```", "can begin or end a block of code");
     doc("/// ~~~\n/// std::process::exit(1)\n/// ~~~", "can begin or end a block of code");
     doc("///\n///     std::process::exit(1)", "two blanks in a row");
-    doc("/// <!--\n/// ```text\n/// -->\n///\n///     std::process::exit(1)\n/// ```", "a `<` can hold code");
+    doc("/// <!--\n/// ```text\n/// -->\n///\n///     std::process::exit(1)\n/// ```", "a tag of HTML can hold code");
     doc("/// ```text", "ends inside of a block");
     given.refused(
         "    /// Gravity term g(q)",

@@ -32,10 +32,10 @@ impl<'a> Parser<'a> {
                     return Err(line.fault(format!("{fence} can begin or end a block of code, which `cargo test` would run")));
                 }
                 fenced = !fenced;
-            } else if !fenced && (text.contains("  ") || text.contains('<')) && Check::Indentation.is_made() {
-                return Err(
-                    line.fault("documentation with two blanks in a row or a `<` can hold code, which `cargo test` would run")
-                );
+            } else if !fenced && (text.contains("  ") || begins_html(text)) && Check::Indentation.is_made() {
+                return Err(line.fault(
+                    "documentation with two blanks in a row or a tag of HTML can hold code, which `cargo test` would run",
+                ));
             }
             lines.push(text);
         }
@@ -44,6 +44,11 @@ impl<'a> Parser<'a> {
             false => Ok(lines),
         }
     }
+}
+
+/// Whether a `<` can begin HTML: with a letter, `/`, `!` or `?` behind it (CommonMark 0.31, 6.6 and 4.6).
+fn begins_html(text: &str) -> bool {
+    text.split('<').skip(1).any(|behind| behind.starts_with(|c: char| c.is_ascii_alphabetic() || "/!?".contains(c)))
 }
 
 #[cfg(test)]
@@ -58,6 +63,7 @@ mod tests {
     #[test]
     fn blocks_of_plain_text_are_the_only_ones() {
         assert_eq!(check("/// A.\n///\n/// ```text\n/// a =   b <c\n///     d\n/// ```\n///\n/// - `q`: b."), Ok(8));
+        assert_eq!(check("/// |r| <= pi/4, a < b, <-1"), Ok(1));
         for text in [
             "/// ```\n/// panic!()\n/// ```",
             "/// ```rust\n/// panic!()\n/// ```",
@@ -69,6 +75,9 @@ mod tests {
             "/// >     panic!()",
             "/// - ```\n///   panic!()\n///   ```",
             "/// <!--\n/// ```text\n/// -->\n///\n///     panic!()\n/// ```",
+            "/// a <script>",
+            "/// a </pre",
+            "/// <?a",
             "/// ```text\n/// a",
             "///panic!()",
         ] {
