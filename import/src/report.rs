@@ -81,8 +81,10 @@ pub(crate) fn of(source: &Source, format: &dyn Format, arm: &Arm, bound: Bound) 
         arm.rows.iter().map(|row| placed(row.span, vec![("name", json!(row.name)), ("source", json!(row.joint))])).collect();
     let rounded: Vec<Value> = if arm.gravity_rounded { vec![json!({"what": "gravity", "digits": 17})] } else { Vec::new() };
     let mut left_out = format.left_out();
-    if arm.boundless > 0 {
-        left_out.insert("position limits beyond any arm".to_owned(), arm.boundless);
+    for (what, count) in [("position limits beyond any arm", arm.boundless), ("effort limits of 0", arm.unknown_efforts)] {
+        if count > 0 {
+            left_out.insert(what.to_owned(), count);
+        }
     }
     let json = json!({
         "robot": arm.name,
@@ -155,6 +157,12 @@ fn words(source: &Source, arm: &Arm, bound: Bound, left_out: &BTreeMap<String, u
     }
     if !arm.massless.is_empty() {
         lines.push(format!("links without mass: {}", names(arm.massless.iter().map(String::as_str).collect())));
+    }
+    if !arm.computed.is_empty() {
+        lines.push(format!(
+            "mass distributions computed from geometries: {}",
+            names(arm.computed.iter().map(String::as_str).collect())
+        ));
     }
     if !arm.impossible.is_empty() {
         lines.push(format!("inertias that no body has, taken as written: those of {}", arm.impossible.join(", ")));
