@@ -77,6 +77,12 @@ pub fn import(source: &Source, options: &Options) -> (Option<Imported>, Diagnost
     let mut diagnostics = Diagnostics::new();
     let imported = read(source, options, &mut diagnostics);
     diagnostics.sort();
+    // Where xacro was not written out, nothing else is worth a word.
+    let xacro = diagnostics.iter().find(|fault| fault.code == Code::Xacro).cloned();
+    if let Some(first) = xacro {
+        diagnostics = Diagnostics::new();
+        diagnostics.push(first);
+    }
     (imported.filter(|_| !diagnostics.has_errors()), diagnostics)
 }
 

@@ -4,7 +4,7 @@ use armgen_codegen::diagnostic::{Diagnostic, Diagnostics};
 use armgen_codegen::exact::{Number, Rational};
 use armgen_codegen::source::Span;
 
-use crate::xml::shown;
+use crate::xml::{is_use, shown};
 use crate::Code;
 
 /// Digits of a number.
@@ -69,6 +69,10 @@ pub(crate) fn decimal(word: &str, span: Span, what: &str, diagnostics: &mut Diag
         None
     };
     let word_shown = shown(word);
+    if is_use(word) {
+        let help = "write the file out and import that: `pip install xacro`, `xacro FILE.xacro > FILE.urdf`";
+        return fault(Code::Xacro, format!("{what} is `{word_shown}`: this is xacro, not a URDF"), "not written out", help);
+    }
     let plain = word.trim_start_matches(['+', '-']).to_ascii_lowercase();
     if matches!(plain.as_str(), "nan" | "inf" | "infinity") {
         return fault(Code::NotFinite, format!("{what} is `{word_shown}`"), "not finite", "every quantity of an arm is finite");
@@ -186,7 +190,7 @@ mod tests {
         check("1e999999999", Err(Code::OutOfRange));
         check("1e-400", Err(Code::OutOfRange));
         check(&"1".repeat(100_000), Err(Code::OutOfRange));
-        check("${pi/2}", Err(Code::BadNumber));
+        check("${pi/2}", Err(Code::Xacro));
     }
 
     #[test]

@@ -17,6 +17,8 @@ pub struct Report {
     lines: Vec<String>,
     short: Vec<String>,
     attached: usize,
+    near: usize,
+    moved: f64,
 }
 
 /// So many names of a list on a terminal: a humanoid has a hundred joints beside an arm.
@@ -45,6 +47,16 @@ impl Report {
         self.lines.extend(more.iter().cloned());
         self.short.extend(more);
         self
+    }
+
+    /// How many angles are nearly, but not, multiples of pi/12, and taken as written.
+    pub fn near(&self) -> usize {
+        self.near
+    }
+
+    /// By how much the origin of the end effector moves at most for what was taken for what it means, m.
+    pub fn moved(&self) -> f64 {
+        self.moved
     }
 
     /// How many bodies are fixed to the links, which reading the description multiplies out.
@@ -106,7 +118,7 @@ pub(crate) fn of(source: &Source, format: &dyn Format, arm: &Arm, bound: Bound) 
     });
     let words = |most| words(source, arm, bound, &left_out, most);
     let attached = arm.rows.iter().map(|row| row.attached.len()).sum();
-    Report { lines: words(usize::MAX), short: words(NAMED), json, attached }
+    Report { lines: words(usize::MAX), short: words(NAMED), json, attached, near: arm.snap.near.len(), moved: bound.flange }
 }
 
 fn words(source: &Source, arm: &Arm, bound: Bound, left_out: &BTreeMap<String, usize>, most: usize) -> Vec<String> {

@@ -9,7 +9,7 @@ use crate::number::{decimal, ending, Decimal};
 use crate::pose::Turn;
 use crate::snap::Snap;
 use crate::written::Written;
-use crate::xml::{attribute, shown};
+use crate::xml::{attribute, is_use, shown};
 use crate::Code;
 
 /// Reads numbers, reports faults, snaps.
@@ -55,7 +55,7 @@ impl Values<'_> {
     /// Exactly N numbers of a text; `None` with a reported fault.
     pub(crate) fn list<const N: usize>(&mut self, text: &str, span: Span, name: &str, what: &str) -> Option<[Decimal; N]> {
         let words: Vec<&str> = text.split_ascii_whitespace().collect();
-        if words.len() != N {
+        if words.len() != N && !is_use(text) {
             let message = format!("{what} has {} of {N} {}", words.len(), if N == 1 { "number" } else { "numbers" });
             let help = format!("write {N}, with blanks between them: `{name}=\"{}\"`", ["0"; N].join(" "));
             self.report(Code::WrongLength, span, message, "", help);

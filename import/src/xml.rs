@@ -108,7 +108,7 @@ fn refusal(source: &Source, error: &Error) -> Diagnostic {
             .also(span, if ends { "the file ends here" } else { "this cannot stand inside it" });
     }
     let (code, message, help) = match error {
-        Error::UnknownNamespace(prefix, _) if prefix == "xacro" => return crate::xacro::refusal(span, source),
+        Error::UnknownNamespace(prefix, _) if prefix == "xacro" => return xacro(span, source),
         Error::UnknownNamespace(prefix, _) => (
             Code::XmlSyntax,
             format!("the prefix `{}` has no namespace", shown(prefix)),
@@ -206,6 +206,23 @@ fn unescaped(text: &str, opened: usize, at: usize) -> Option<(char, &'static str
         '<' if !text[opened..at].contains('>') => Some(('<', "&lt;")),
         _ => None,
     }
+}
+
+/// Whether a text uses a property or an argument of xacro.
+pub(crate) fn is_use(text: &str) -> bool {
+    text.contains("${") || text.contains("$(")
+}
+
+/// A use of xacro at a place.
+pub(crate) fn xacro(span: Span, source: &Source) -> Diagnostic {
+    let name = source.name().rsplit(['/', '\\']).next().unwrap_or_default();
+    // Standard input has no name that can be typed.
+    let name = if name.contains(' ') { "ARM.urdf.xacro" } else { name };
+    let stem = name.strip_suffix(".xacro").unwrap_or(name);
+    let stem = stem.strip_suffix(".urdf").unwrap_or(stem);
+    let out = if name == format!("{stem}.urdf") { format!("{stem}_full.urdf") } else { format!("{stem}.urdf") };
+    let help = format!("write the file out and import that: `pip install xacro`, `xacro {} > {}`", shown(name), shown(&out));
+    Diagnostic::new(Code::Xacro, span, "this is xacro, not a URDF", "not written out", help)
 }
 
 /// A description where a URDF is asked for.

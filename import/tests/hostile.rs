@@ -313,6 +313,8 @@ fn what_is_left_of_xacro_is_left_out() {
         "<xacro:macro name='m' params='l'><link name='${l}'/></xacro:macro>",
         "<link name='seen'><visual><xacro:shape size='${width}'/></visual></link><joint name='f' type='fixed'><parent link='one'/><child link='seen'/></joint>",
         "<gazebo><plugin><robotNamespace>${name}</robotNamespace></plugin></gazebo>",
+        // Nothing of the arm depends on where a sensor of the base is.
+        "<link name='imu'/><joint name='m' type='fixed'><parent link='base'/><child link='imu'/><origin xyz='$(optenv PLACE 0 0 1)'/></joint>",
     ] {
         let source = Source::new("robot.urdf", with(unused));
         let (imported, diagnostics) = import(&source, &Options::default());
@@ -325,4 +327,23 @@ fn what_is_left_of_xacro_is_left_out() {
         let said = said(&with(&used.repeat(20)));
         assert!(said.len() == 1 && said[0].0 == "xacro" && said[0].1.contains("pip install xacro"), "{used}: {said:?}");
     }
+    let said = said(&model.replace("0 1 0", "${x} $(arg y) ${z + 1}"));
+    assert!(said.len() == 1 && said[0].0 == "xacro", "{said:?}");
+}
+
+/// Sizes of many digits, and shapes whose numbers are far apart: an arm, or a fault.
+#[test]
+fn shapes_of_difficult_sizes_are_read_in_bounded_time() {
+    let model = |geoms: &str| format!("<mujoco><worldbody><body><joint/>{geoms}</body></worldbody></mujoco>");
+    let digits = format!("0.{}", "123456789".repeat(20));
+    for kind in ["box", "ellipsoid", "capsule", "cylinder", "sphere"] {
+        for sizes in [format!("{digits} {digits} {digits}"), "1e-3 1e3 1e-3".to_owned(), "7 1e-9 3".to_owned()] {
+            check(model(&format!("<geom type='{kind}' size='{sizes}'/>")), None);
+            let ends = format!("{digits} 0 1e-3 -{digits} 3 7");
+            check(model(&format!("<geom type='{kind}' size='{sizes}' fromto='{ends}' density='{digits}'/>")), None);
+        }
+        check(model(&format!("<geom type='{kind}' size='1e-200 1e-200 1e-200'/>")), Some(Code::OutOfRange));
+        check(model(&format!("<geom type='{kind}' size='1e300 1e300 1e300' mass='1'/>")), Some(Code::OutOfRange));
+    }
+    check(model(&"<geom size='0.1'/>".repeat(1001)), Some(Code::TooLarge));
 }

@@ -368,3 +368,50 @@ fn velocities_that_no_joint_reaches_are_left_out() {
         }
     }
 }
+
+/// An arm of one joint with a finger, and a frame beside it, as a URDF and as a MuJoCo model.
+fn with_a_finger(frame: &str) -> [String; 2] {
+    let inertial = "<inertial><mass value='1'/><inertia ixx='1' iyy='1' izz='1' ixy='0' ixz='0' iyz='0'/></inertial>";
+    let limit = "<axis xyz='0 1 0'/><limit lower='-1' upper='1' velocity='1' effort='1'/>";
+    let urdf = format!(
+        "<robot name='a'><link name='b'/><link name='l'>{inertial}</link><link name='moving_jaw'>{inertial}</link><link name='{frame}'/>\
+         <joint name='j' type='revolute'><parent link='b'/><child link='l'/>{limit}</joint>\
+         <joint name='gripper' type='revolute'><parent link='l'/><child link='moving_jaw'/>{limit}</joint>\
+         <joint name='f' type='fixed'><parent link='l'/><child link='{frame}'/></joint></robot>"
+    );
+    let inertial = "<inertial mass='1' pos='0 0 0' diaginertia='1 1 1'/>";
+    let mjcf = format!(
+        "<mujoco><worldbody><body name='l'>{inertial}<joint name='j'/><site name='{frame}'/>\
+         <body name='moving_jaw'>{inertial}<joint name='gripper'/></body></body></worldbody></mujoco>"
+    );
+    [urdf, mjcf]
+}
+
+/// One rule for both formats: the suggestion, copied, gives the arm without its finger; and so does that of the warning where there is no choice.
+#[test]
+fn the_suggested_tip_leaves_fingers_out() {
+    let suggested = |help: &str| {
+        let words: Vec<&str> = help.split(['`', ' ']).collect();
+        let at = words.iter().position(|word| *word == "--tip").unwrap_or_else(|| panic!("no tip in {help}"));
+        words[at + 1].to_owned()
+    };
+    for frame in
+        ["tool0", "tcp", "hand_tcp", "flange", "ee_link", "eef", "gripper_frame_link", "gripperframe", "endEffector", "marker"]
+    {
+        for text in with_a_finger(frame) {
+            let source = Source::new("arm", text.as_str());
+            let (found, diagnostics) = import(&source, &Options::default());
+            let fault = diagnostics.iter().next().unwrap_or_else(|| panic!("{frame}: nothing is said of {text}"));
+            // A site that is no frame of a tool is no choice of a tip.
+            let code = if frame == "marker" && text.starts_with("<mujoco") { "finger-as-tip" } else { "several-tips" };
+            assert_eq!((fault.code.name(), found.is_some()), (code, code == "finger-as-tip"), "{frame}: {}", fault.message);
+            assert!(fault.help.contains("--lock gripper=0"), "{}", fault.help);
+            let tip = suggested(&fault.help);
+            assert_eq!(tip == frame, code == "several-tips", "{frame}: {}", fault.help);
+            let options = Options { tip: Some(tip), lock: vec![("gripper".into(), "0".into())], ..Options::default() };
+            let (imported, diagnostics) = import(&source, &options);
+            let yaml = imported.unwrap_or_else(|| panic!("{}", diagnostics.render(&source, Colour::Never))).yaml;
+            assert_eq!(valid(&yaml).dof(), 1, "{yaml}");
+        }
+    }
+}

@@ -1,7 +1,6 @@
 //! Parts of MuJoCo models that are computed: mass distributions of shapes, what flags switch off, what other files hold.
 
-#[allow(dead_code, reason = "the other tests use the rest")]
-mod common;
+use crate::common;
 
 use std::collections::BTreeMap;
 
@@ -95,7 +94,7 @@ fn shapes_are_exact() {
     assert!((number("xx:") - across).abs() < 1e-16 && (number("zz:") - along).abs() < 1e-16, "{inertia}");
 }
 
-/// `inertiafromgeom` and groups choose between what is given and what is computed, and tensors that break the triangle inequality alone are balanced.
+/// As in MuJoCo 4.0.0: `inertiafromgeom` and groups choose between what is given and what is computed, and tensors that break the triangle inequality alone are balanced.
 #[test]
 fn the_compiler_chooses_what_has_mass() {
     let model = |compiler: &str, tensor: &str, geom: &str| {
@@ -112,6 +111,7 @@ fn the_compiler_chooses_what_has_mass() {
     assert_eq!(mass("inertiafromgeom='false'", geom), "7");
     assert_eq!(mass("inertiafromgeom='true'", geom), "3");
     assert_eq!(mass("inertiafromgeom='true' inertiagrouprange='1 2'", geom), "7");
+    assert_eq!(mass("inertiafromgeom='true'", "<geom size='0.1' mass='0'/>"), "7");
     assert_eq!(mass("balanceinertia='true'", geom), "7");
     let unbalanced = model("balanceinertia='true'", "1 1 3", "");
     let (imported, diagnostics) = import(&Source::new("model.xml", unbalanced), &Options::default());

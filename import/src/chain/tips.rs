@@ -106,9 +106,11 @@ fn several(tree: &Tree, base: usize, locks: &Locks, groups: &BTreeMap<usize, Vec
         .collect();
     let longest = chains[0].0;
     let branch = before_branches(tree, base, longest.link, locks);
-    let (first, joints) = match (tool, &branch) {
-        (Some((_, chain)), _) => (chain.link, chain.joints),
-        (None, Some((link, joints))) if !fingers.is_empty() => (*link, *joints),
+    let other = chains.iter().map(|(chain, _)| *chain).find(|chain| !is_finger(tree, chain.last));
+    let (first, joints) = match (tool, branch, other) {
+        (Some((_, chain)), ..) => (chain.link, chain.joints),
+        (None, Some(before), _) if is_finger(tree, longest.last) => before,
+        (None, None, Some(chain)) => (chain.link, chain.joints),
         _ => (longest.link, longest.joints),
     };
     // The one that is suggested is listed first.

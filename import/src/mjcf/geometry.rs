@@ -78,7 +78,7 @@ impl<'a, 'i> Mjcf<'a, 'i> {
 
     /// The `inertial` of a body, where it holds.
     pub(super) fn inertial(&self, body: Node<'a, 'i>) -> Option<Node<'a, 'i>> {
-        let replaced = self.compiler.from_geometries == FromGeometries::Always && !self.selected(body).is_empty();
+        let replaced = self.compiler.from_geometries == FromGeometries::Always && !self.made_of(body).is_empty();
         child(body, "inertial").filter(|_| !replaced)
     }
 
@@ -162,6 +162,13 @@ impl<'a, 'i> Mjcf<'a, 'i> {
         };
         let mass = self.mass_of(element, kind, &sizes, &what, values)?;
         let [xx, yy, zz] = moments(kind, &sizes, &mass);
+        let holds =
+            |number: &Number| number.is_zero() || number.to_f64().abs() >= f64::MIN_POSITIVE && number.to_f64().is_finite();
+        if ![&mass, &xx, &yy, &zz].into_iter().all(holds) {
+            let help = "look for a length, mass or density of an unlikely size: SI units throughout";
+            values.report(Code::OutOfRange, span, format!("{what} has a mass or an inertia that no float can hold"), "", help);
+            return None;
+        }
         let zero = Written::zero;
         let inertia = [&xx, &yy, &zz].map(|moment| Written::as_is(&as_decimal(moment, span)).inexact());
         let [xx, yy, zz] = inertia;
