@@ -13,10 +13,10 @@
 use std::path::{Path, PathBuf};
 
 use armgen_codegen::build_script;
-use armgen_codegen::diagnostic::Colour;
+use armgen_codegen::diagnostic::{Colour, Diagnostics};
 use armgen_codegen::source::Source;
 
-use crate::{import, Options};
+use crate::{import, included, Options};
 
 /// The arm of a file, with the options of [`Options`].
 #[derive(Clone, Debug)]
@@ -99,6 +99,16 @@ impl Robot {
         println!("cargo:rerun-if-changed={name}");
         let text = std::fs::read_to_string(&self.path).map_err(|e| format!("error: cannot read {name}: {e}"))?;
         let source = Source::new(name.to_string(), text);
+        let folder = self.path.parent().unwrap_or(Path::new(""));
+        let read = |file: &str| {
+            println!("cargo:rerun-if-changed={}", folder.join(file).display());
+            beside(folder, file)
+        };
+        let source = included(&source, &read).map_err(|fault| {
+            let mut faults = Diagnostics::new();
+            faults.push(*fault);
+            faults.render(&source, Colour::Never)
+        })?;
         let (imported, diagnostics) = import(&source, &self.options);
         let imported = imported.ok_or_else(|| diagnostics.render(&source, Colour::Never))?;
         for warning in diagnostics.iter() {
@@ -111,3 +121,23 @@ impl Robot {
         Ok(file)
     }
 }
+
+/// The text of a file below a folder, by its relative path; why it cannot be had if not. A link that leads out of the folder is not followed.
+///
+/// # Errors
+/// Why the file cannot be read.
+pub fn beside(folder: &Path, file: &str) -> Result<String, String> {
+    let words = |error: std::io::Error| error.to_string();
+    let folder = if folder.as_os_str().is_empty() { Path::new(".") } else { folder };
+    let (folder, path) = (folder.canonicalize().map_err(words)?, folder.join(file).canonicalize().map_err(words)?);
+    if !path.starts_with(folder) {
+        return Err("it is outside of the model's folder".to_owned());
+    }
+    if std::fs::metadata(&path).map_err(words)?.len() > MAX_BYTES {
+        return Err(format!("it is longer than {} MiB", MAX_BYTES >> 20));
+    }
+    std::fs::read_to_string(path).map_err(words)
+}
+
+/// Bytes of a file that a model includes.
+const MAX_BYTES: u64 = 16 << 20;

@@ -4,6 +4,7 @@
 
 mod gravity;
 mod locks;
+mod names;
 mod tips;
 
 use std::collections::btree_map::{BTreeMap, Entry};
@@ -16,7 +17,7 @@ use armgen_codegen::suggest::did_you_mean;
 use armgen_codegen::validate::{is_free_name, is_rust_name};
 
 use crate::body::Body;
-use crate::format::{Extent, Format, Motion};
+use crate::format::{Extent, Format, Motion, Part};
 use crate::pose::Pose;
 use crate::snap::Snap;
 use crate::tree::{Kind, Role, Tree};
@@ -34,6 +35,7 @@ const MAX_BODIES: usize = 1000;
 #[derive(Clone, Debug)]
 pub(crate) struct Attached {
     pub(crate) link: String,
+    pub(crate) name: String,
     pub(crate) origin: Vec<Pose>,
     pub(crate) body: Body,
     pub(crate) span: Span,
@@ -79,8 +81,12 @@ pub(crate) struct Arm {
     pub(crate) massless: Vec<String>,
     /// What has a tensor that no body has, taken as written.
     pub(crate) impossible: Vec<String>,
+    /// Bodies whose mass distributions are computed from geometries.
+    pub(crate) computed: Vec<String>,
     /// How many position limits were left out since no arm has such.
     pub(crate) boundless: usize,
+    /// How many efforts of 0 were left out of an arm without masses.
+    pub(crate) unknown_efforts: usize,
     /// Joints of the base that do not move anything of the chain.
     pub(crate) left_out_branches: usize,
     /// Notes for the user.
@@ -114,7 +120,18 @@ pub(crate) fn arm(
     diagnostics: &mut Diagnostics,
 ) -> Option<Arm> {
     let (snap, inertia_as_written) = (Snap::new(options.snap), options.inertia_as_written);
-    let mut values = Values { source, diagnostics, snap, inertia_as_written, impossible: Vec::new(), boundless: 0 };
+    let massless_file = (0..tree.links.len()).all(|link| !format.has_body(link) && format.lacks_body(link).is_none());
+    let mut values = Values {
+        source,
+        diagnostics,
+        snap,
+        inertia_as_written,
+        impossible: Vec::new(),
+        computed: Vec::new(),
+        boundless: 0,
+        kinematics_alone: massless_file,
+        unknown_efforts: 0,
+    };
     let locks = locks::Locks::new(tree, format, &options.lock, &mut values)?;
     let diagnostics = &mut *values.diagnostics;
     let base = named_link(tree, options.base.as_deref(), "--base", diagnostics)?;
@@ -154,6 +171,11 @@ pub(crate) fn arm(
     let mut builder =
         Builder { tree, format, locks, led, values, on_path, locked: Vec::new(), massless: Vec::new(), options, bodies: 0 };
     let (rows, tool) = builder.rows(&path)?;
+    if let (true, Some(&joint)) = (massless_file, moving.first()) {
+        let message = "no link of the file has an `inertial`: the description is of kinematics alone";
+        let help = "give the moving links masses, centres and inertias where forces matter";
+        builder.values.report(Code::NoMass, tree.links[tree.joints[joint].child].span, message, "moves first", help);
+    }
     if rows.is_empty() && !builder.values.diagnostics.has_errors() {
         let message = format!("nothing moves between `{}` and `{}`", shown(&tree.links[base].name), shown(&tree.links[tip].name));
         let help = "choose a `--tip` below a joint that turns or slides";
@@ -170,7 +192,7 @@ pub(crate) fn arm(
         assumed.push(format!("the mass of the base link `{}` is left out: it does not move", shown(&tree.links[base].name)));
     }
     builder.values.warn_of_near_angles();
-    let Builder { values: Values { snap, impossible, boundless, .. }, locked, massless, .. } = builder;
+    let Builder { values: Values { snap, impossible, computed, boundless, unknown_efforts, .. }, locked, massless, .. } = builder;
     let robot_name = options.name.clone().unwrap_or_else(|| identifier(&tree.name, &mut BTreeSet::new(), is_rust_name));
     Some(Arm {
         name: robot_name,
@@ -187,7 +209,9 @@ pub(crate) fn arm(
         locked,
         massless,
         impossible,
+        computed,
         boundless,
+        unknown_efforts,
         left_out_branches,
         notes,
         assumed,
@@ -331,6 +355,7 @@ impl Builder<'_> {
             None => self.following(index)?,
         };
         self.warn_outside(index, &lock);
+        self.warn_of_frozen(index);
         self.locked.push(lock.clone());
         if lock.value == 0.0 {
             return None;
@@ -345,8 +370,9 @@ impl Builder<'_> {
         let (mut body, mut attached, mut unreadable) = (None, Vec::new(), false);
         let mut open = vec![(link, at.to_vec())];
         while let Some((link, poses)) = open.pop() {
-            let found = self.format.body(link, &mut self.values);
-            self.bodies += usize::from(found.is_some());
+            let lacking = self.format.lacks_body(link);
+            let found = if lacking.is_none() { self.format.bodies(link, &mut self.values) } else { Vec::new() };
+            self.bodies += found.len();
             if self.bodies > MAX_BODIES {
                 let span = tree.links[link].span;
                 self.values.report(
@@ -358,19 +384,24 @@ impl Builder<'_> {
                 );
                 return None;
             }
-            match found {
-                Some((frame, found)) if own == Some(link) && frame.is_empty() => body = Some(found),
-                Some((frame, body)) => {
-                    let origin = poses.iter().cloned().chain(frame).collect();
-                    attached.push(Attached { link: tree.links[link].name.clone(), origin, body, span: tree.links[link].span });
+            if found.is_empty() {
+                unreadable |= self.format.has_body(link);
+                if lacking.is_some() {
+                    self.without_body(link);
+                    unreadable = true;
                 }
-                None => {
-                    unreadable |= self.format.has_body(link);
-                    if self.format.lacks_body(link) {
-                        self.without_body(link);
-                        unreadable = true;
-                    }
+            }
+            // Shapes of one body have names of their own.
+            let several = found.len() > 1;
+            for Part { name, frame, body: found } in found {
+                if own == Some(link) && frame.is_empty() && body.is_none() {
+                    body = Some(found);
+                    continue;
                 }
+                let link = &tree.links[link];
+                let origin = poses.iter().cloned().chain(frame).collect();
+                let name = name.filter(|_| several).unwrap_or_else(|| link.name.clone());
+                attached.push(Attached { link: link.name.clone(), name, origin, body: found, span: link.span });
             }
             let beside: Vec<usize> = tree.links[link].below.iter().rev().copied().filter(|j| !self.on_path.contains(j)).collect();
             for below in beside {
@@ -399,6 +430,42 @@ impl Builder<'_> {
         }
     }
 
+    /// Warns of a joint that the file moves with another one, and that a lock holds while that one moves: with the mass that then stands still.
+    fn warn_of_frozen(&mut self, index: usize) {
+        let Some(leader) = self.moving_leader(index) else { return };
+        let mass = self.mass_below(index);
+        if mass == 0.0 {
+            return;
+        }
+        let joint = &self.tree.joints[index];
+        let (name, leader) = (shown(&joint.name), shown(&self.tree.joints[leader].name));
+        let message = format!("the joint `{name}` follows `{leader}`, and is locked: {mass} kg stand still that the file moves");
+        let help = "torques and accelerations are not those of the file; frames of the chain are";
+        self.values.report(Code::ChangesMotion, joint.span, message, "locked", help);
+    }
+
+    /// The joint of the chain that moves and that a joint follows, be it through others.
+    fn moving_leader(&self, index: usize) -> Option<usize> {
+        let mut at = index;
+        for _ in 0..self.tree.joints.len() {
+            at = self.tree.joint(self.format.leader(at)?.0)?;
+            if self.on_path.contains(&at) && self.tree.joints[at].kind.moves() && self.locks.of(at).is_none() {
+                return Some(at);
+            }
+        }
+        None
+    }
+
+    /// The mass of all that hangs on a joint, in kg, for a message.
+    pub(super) fn mass_below(&self, index: usize) -> f64 {
+        let (mut mass, mut open) = (0.0, vec![self.tree.joints[index].child]);
+        while let Some(link) = open.pop() {
+            mass += self.format.mass(link);
+            open.extend(self.tree.links[link].below.iter().map(|&joint| self.tree.joints[joint].child));
+        }
+        mass
+    }
+
     /// A moving link has a mass distribution.
     fn complete(&mut self, link: usize, row: &mut Row) {
         if row.body.is_some() || !row.attached.is_empty() || row.unreadable || self.format.may_be_massless(link) {
@@ -410,6 +477,10 @@ impl Builder<'_> {
     /// A link that moves and should have a mass distribution has none.
     fn without_body(&mut self, link: usize) {
         let (span, name) = (self.tree.links[link].span, &self.tree.links[link].name);
+        if self.values.kinematics_alone {
+            self.massless.push(name.clone());
+            return;
+        }
         if self.options.massless {
             let message = format!("the moving link `{}` is taken to have no mass", shown(name));
             self.values.report(Code::NoMass, span, message, "", "give its mass, centre and inertia where forces matter");
@@ -417,8 +488,10 @@ impl Builder<'_> {
             return;
         }
         let message = match self.format.lacks_body(link) {
-            true => format!("the moving body `{}` has no `inertial`; inertias are not computed from geometries", shown(name)),
-            false => format!("the moving link `{}` has no `inertial`, and nothing that is fixed to it has", shown(name)),
+            Some(kind) => {
+                format!("the moving body `{}` has no `inertial`, and {kind}, whose inertia is not computed", shown(name))
+            }
+            None => format!("the moving link `{}` has no `inertial`, and nothing that is fixed to it has", shown(name)),
         };
         let help = "give its mass, centre and inertia; with `--massless` its mass is 0, which is enough for kinematics";
         self.values.report(Code::MissingInertial, span, message, "moves", help);

@@ -11,6 +11,8 @@ codes! {
         TooLarge Error "too-large",
         /// A macro of xacro that was not written out.
         Xacro Error "xacro",
+        /// A model in the format SDF.
+        Sdf Error "sdf",
         /// A part of MJCF that a description of a serial arm does not hold.
         MjcfFeature Error "mjcf-feature",
         /// A part of a URDF that is not read.
@@ -96,6 +98,8 @@ codes! {
         UnreadAttribute Warning "unread-attribute",
         /// An element that stands a second time where the first one holds.
         RepeatedElement Warning "repeated-element",
+        /// A last joint that seems to open a gripper.
+        FingerAsTip Warning "finger-as-tip",
         /// What would change the motion, and is left out.
         ChangesMotion Warning "changes-motion",
     }

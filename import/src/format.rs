@@ -28,6 +28,15 @@ pub(crate) struct Motion {
     pub(crate) spring: Option<(Decimal, Option<Decimal>)>,
 }
 
+/// A mass distribution of a link.
+pub(crate) struct Part {
+    /// Where a link has several.
+    pub(crate) name: Option<String>,
+    /// The frame that it is given in, in that of the link.
+    pub(crate) frame: Vec<Pose>,
+    pub(crate) body: Body,
+}
+
 /// Which parts of the tree make up the arm.
 pub(crate) struct Extent<'r> {
     /// Joints that move.
@@ -68,20 +77,25 @@ pub(crate) trait Format {
         (None, Decimal::zero())
     }
 
-    /// The mass distribution of a link with its frame in that of the link; `None` if it has none, or a faulty one.
-    fn body(&self, link: usize, values: &mut Values<'_>) -> Option<(Vec<Pose>, Body)>;
+    /// The mass distributions of a link; none if it has none, or a faulty one.
+    fn bodies(&self, link: usize, values: &mut Values<'_>) -> Vec<Part>;
 
     /// Whether the file gives a link a mass distribution.
     fn has_body(&self, link: usize) -> bool;
+
+    /// The mass of a link in kg, for a message; 0 where it is not known.
+    fn mass(&self, _link: usize) -> f64 {
+        0.0
+    }
 
     /// Whether a link that moves may do without one.
     fn may_be_massless(&self, _link: usize) -> bool {
         false
     }
 
-    /// Whether the file means a mass distribution of a link that it does not give in numbers.
-    fn lacks_body(&self, _link: usize) -> bool {
-        false
+    /// Of a link whose mass distribution the file means and does not give in numbers or shapes with a formula: what it gives instead.
+    fn lacks_body(&self, _link: usize) -> Option<String> {
+        None
     }
 
     /// Gravity in the root link's frame.

@@ -3,6 +3,7 @@
 //!
 //! ```text
 //! xml.rs     text -> XML tree with places, bounded
+//! xacro.rs   macros that were not written out, and what is left of them
 //! number.rs  digits as they stand
 //! written.rs a number of robot.yaml beside what the file says
 //! snap.rs    1.5708 is pi/2
@@ -12,6 +13,7 @@
 //! format.rs  what the formats have in common
 //! urdf.rs    URDF
 //! mjcf.rs    MJCF
+//! include.rs the files that a MuJoCo model includes, read by the caller
 //! unread.rs  what a file says and nothing reads
 //! chain.rs   from base to tip: rows, poses, bodies; locked branches lumped; every fault with its place
 //! bound.rs   how far snapping can move the flange and the torques
@@ -34,6 +36,7 @@ mod code;
 mod convert;
 mod export;
 mod format;
+mod include;
 mod mjcf;
 mod number;
 mod options;
@@ -45,6 +48,7 @@ mod unread;
 mod urdf;
 mod values;
 mod written;
+mod xacro;
 mod xml;
 mod yaml;
 
@@ -55,6 +59,7 @@ use armgen_codegen::source::Source;
 pub use code::Code;
 pub use convert::{convert, Converted};
 pub use export::{export, Exported};
+pub use include::{included, Reader};
 pub use options::Options;
 pub use report::Report;
 
@@ -67,17 +72,27 @@ pub struct Imported {
     pub report: Report,
 }
 
-/// The arm of a URDF or a MuJoCo model. All faults of the file with their places; there is an arm if and only if none of them is an error.
+/// The arm of a URDF or a MuJoCo model; [`included`] writes the files out that a model includes. All faults of the file with their places; there is an arm if and only if none of them is an error.
 pub fn import(source: &Source, options: &Options) -> (Option<Imported>, Diagnostics) {
     let mut diagnostics = Diagnostics::new();
     let imported = read(source, options, &mut diagnostics);
     diagnostics.sort();
+    // Where xacro was not written out, nothing else is worth a word.
+    let xacro = diagnostics.iter().find(|fault| fault.code == Code::Xacro).cloned();
+    if let Some(first) = xacro {
+        diagnostics = Diagnostics::new();
+        diagnostics.push(first);
+    }
     (imported.filter(|_| !diagnostics.has_errors()), diagnostics)
 }
 
 fn read(source: &Source, options: &Options, diagnostics: &mut Diagnostics) -> Option<Imported> {
-    let document = xml::parse(source, diagnostics)?;
+    let text = xml::without_harmless_slips(source.text());
+    let document = xml::parse(&text, source, diagnostics)?;
     let root = document.root_element();
+    if xacro::refuse(source, root, diagnostics) {
+        return None;
+    }
     match root.tag_name().name() {
         "robot" => {
             let (tree, urdf) = urdf::read(root, diagnostics)?;
@@ -86,6 +101,18 @@ fn read(source: &Source, options: &Options, diagnostics: &mut Diagnostics) -> Op
         "mujoco" => {
             let (tree, mjcf) = mjcf::read(root, diagnostics)?;
             taken(source, &tree, &mjcf, options, diagnostics)
+        }
+        "sdf" => {
+            let message = "this is an SDF, a format that is not read";
+            let help = "import the URDF that the model was made from, or write one out: `sdf2urdf` of pysdf, or `sdf2mjcf` of gz-mujoco for a MuJoCo model";
+            diagnostics.push(Diagnostic::new(Code::Sdf, xml::place(root), message, "the model of a simulator", help));
+            None
+        }
+        "mujocoinclude" => {
+            let message = "this is a part of a MuJoCo model";
+            let help = "import the model that includes it";
+            diagnostics.push(Diagnostic::new(Code::MjcfFeature, xml::place(root), message, "to be included", help));
+            None
         }
         other => {
             let message = format!("the file holds `{}`, not a robot", xml::shown(other));

@@ -11,6 +11,7 @@
 
 mod classes;
 mod effects;
+mod geometry;
 mod names;
 mod turns;
 
@@ -18,18 +19,20 @@ use std::cell::OnceCell;
 use std::collections::BTreeMap;
 
 use armgen_codegen::diagnostic::{Diagnostic, Diagnostics};
+use armgen_codegen::exact::{Number, Rational};
 use armgen_codegen::source::Span;
+use armgen_codegen::validate::impossible_inertia;
 use roxmltree::Node;
 
 use self::classes::{Classes, Element};
-use crate::body::Body;
-use crate::format::{Extent, Format, Motion};
+use self::effects::Disabled;
+use crate::format::{Extent, Format, Motion, Part};
 use crate::number::Decimal;
 use crate::pose::{nothing, Pose, Turn};
 use crate::tree::{Joint, Kind, Role, Tree};
 use crate::values::Values;
 use crate::written::Written;
-use crate::xml::{attribute, child, place, shown};
+use crate::xml::{attribute, place, shown};
 use crate::Code;
 
 /// What to do with a file that holds more than descriptions of bodies.
@@ -43,6 +46,18 @@ struct Compiler {
     autolimits: bool,
     /// Groups of geometries that make up inertias.
     groups: [i64; 2],
+    from_geometries: FromGeometries,
+    /// Tensors that break the triangle inequality are replaced.
+    balanced: bool,
+}
+
+/// Whose inertias are computed from geometries.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum FromGeometries {
+    /// Of bodies without `inertial`.
+    Auto,
+    Always,
+    Never,
 }
 
 /// What stands behind a link.
@@ -85,6 +100,7 @@ struct Placed<'a, 'i> {
 pub(crate) struct Mjcf<'a, 'i> {
     root: Node<'a, 'i>,
     compiler: Compiler,
+    disabled: Disabled,
     classes: Classes<'a>,
     /// Each with the one around it.
     frames: Vec<(Node<'a, 'i>, Option<usize>)>,
@@ -100,12 +116,14 @@ pub(crate) fn read<'a, 'i>(root: Node<'a, 'i>, diagnostics: &mut Diagnostics) ->
     let before = diagnostics.errors();
     effects::refuse_macros(root, diagnostics);
     let compiler = compiler(root, diagnostics);
+    let disabled = effects::disabled(root, diagnostics);
     let classes = Classes::read(root);
     classes.refuse_unknown(root, diagnostics);
     names::warn_of_unread(root, diagnostics);
     let mjcf = Mjcf {
         root,
         compiler,
+        disabled,
         classes,
         frames: Vec::new(),
         links: vec![Held::World],
@@ -135,7 +153,14 @@ fn sections<'a, 'i>(root: Node<'a, 'i>, name: &'static str) -> impl Iterator<Ite
 }
 
 fn compiler(root: Node<'_, '_>, diagnostics: &mut Diagnostics) -> Compiler {
-    let mut compiler = Compiler { degrees: true, sequence: *b"xyz", autolimits: true, groups: [0, 5] };
+    let mut compiler = Compiler {
+        degrees: true,
+        sequence: *b"xyz",
+        autolimits: true,
+        groups: [0, 5],
+        from_geometries: FromGeometries::Auto,
+        balanced: false,
+    };
     for node in sections(root, "compiler") {
         effects::refuse_changed_inertias(node, diagnostics);
         if let Some((word, span)) = attribute(node, "angle") {
@@ -156,6 +181,20 @@ fn compiler(root: Node<'_, '_>, diagnostics: &mut Diagnostics) -> Compiler {
         }
         if let Some(word) = node.attribute("autolimits") {
             compiler.autolimits = word == "true";
+        }
+        if let Some(word) = node.attribute("balanceinertia") {
+            compiler.balanced = word == "true";
+        }
+        if let Some((word, span)) = attribute(node, "inertiafromgeom") {
+            match word {
+                "auto" => compiler.from_geometries = FromGeometries::Auto,
+                "true" => compiler.from_geometries = FromGeometries::Always,
+                "false" => compiler.from_geometries = FromGeometries::Never,
+                _ => {
+                    let help = "write `auto`, `true` or `false`";
+                    effects::refuse(span, format!("`inertiafromgeom` is `{}`", shown(word)), help, diagnostics);
+                }
+            }
         }
         let groups: Option<Vec<i64>> =
             node.attribute("inertiagrouprange").map(|words| words.split_ascii_whitespace().flat_map(str::parse).collect());
@@ -380,17 +419,44 @@ impl<'a, 'i> Mjcf<'a, 'i> {
         values.direction(&axis, span, what)
     }
 
-    /// Whether a body takes its inertia from geometries.
-    fn is_of_geometries(&self, body: Node<'a, 'i>) -> bool {
-        let counts = |geom: Node<'a, 'i>| {
-            let element = Element { node: geom, class: classes::around(geom) };
-            let number = |name: &str| self.classes.attribute(element, name).and_then(|(word, _)| word.trim().parse::<f64>().ok());
-            let group = number("group").unwrap_or(0.0) as i64;
-            let massless = number("mass").or(number("density")) == Some(0.0);
-            !massless && (self.compiler.groups[0]..=self.compiler.groups[1]).contains(&group)
+    /// The mass distribution that an `inertial` gives; faults are reported.
+    fn of_inertial(&self, node: Node<'a, 'i>, inertial: Node<'a, 'i>, values: &mut Values<'_>) -> Option<Part> {
+        let called = format!("the body `{}`", shown(node.attribute("name").unwrap_or_default()));
+        let element = Element { node: inertial, class: None };
+        if attribute(inertial, "mass").is_none() {
+            let message = format!("the mass of {called} is missing");
+            values.report(Code::MissingAttribute, place(inertial), message, "", "write `mass=\"1\"` in it");
+        }
+        let mass = self.number(element, "mass", &format!("the mass of {called}"), values);
+        let before = values.diagnostics.errors();
+        let mut poses = self.pose(element, &format!("the centre of mass of {called}"), values);
+        let tensor = |name: &str| attribute(inertial, name).map(|(_, span)| span);
+        let what = format!("the inertia of {called}");
+        let (elements, span) = if let Some(span) = tensor("fullinertia") {
+            (self.numbers::<6>(element, "fullinertia", &what, values), span)
+        } else if let Some(span) = tensor("diaginertia") {
+            let diagonal = self.numbers::<3>(element, "diaginertia", &what, values);
+            let zero = Decimal::zero;
+            (diagonal.map(|[xx, yy, zz]| [xx, yy, zz, zero(), zero(), zero()]), span)
+        } else {
+            let message = format!("{what} is missing");
+            let help = "write `diaginertia=\"1 1 1\"` or `fullinertia=\"1 1 1 0 0 0\"` in it";
+            values.report(Code::MissingAttribute, place(inertial), message, "", help);
+            (None, place(inertial))
         };
-        child(body, "inertial").is_none()
-            && body.children().any(|node| node.is_element() && node.tag_name().name() == "geom" && counts(node))
+        let elements = elements?;
+        let readable = values.diagnostics.errors() == before;
+        // A tensor takes one rotation; more are the pose of a frame.
+        let (frame, com) = match poses.len() {
+            1 => (Vec::new(), poses.remove(0)),
+            _ => (poses, Pose::translation(nothing())),
+        };
+        if self.compiler.balanced && readable && !is_balanced(&elements) {
+            let message = format!("with `balanceinertia` {what} is not what the file says of it");
+            effects::refuse(span, message, SAVE_COMPILED, values.diagnostics);
+        }
+        let body = values.body(&called, mass?, (com.xyz, com.turn), &elements, readable, span);
+        Some(Part { name: None, frame, body })
     }
 }
 
@@ -452,13 +518,14 @@ impl Format for Mjcf<'_, '_> {
         let effort = range.map(|[low, high]| if low.value.abs() < high.value.abs() { positive(low) } else { positive(high) });
         let effort = values.largest(effort, "effort", name);
         // A polynomial of the rate is refused as such.
-        let linear = self.classes.attribute(element, "damping").is_none_or(|(text, _)| text.split_ascii_whitespace().count() < 2);
+        let linear = !self.disabled.damper
+            && self.classes.attribute(element, "damping").is_none_or(|(text, _)| text.split_ascii_whitespace().count() < 2);
         let viscous = linear.then(|| self.number(element, "damping", "damping", values)).flatten();
-        let coulomb = self.number(element, "frictionloss", "frictionloss", values);
+        let coulomb = if self.disabled.friction { None } else { self.number(element, "frictionloss", "frictionloss", values) };
         let armature = self.number(element, "armature", "an armature", values);
         // Several numbers are a polynomial, which is refused as such.
-        let one =
-            self.classes.attribute(element, "stiffness").is_some_and(|(text, _)| text.split_ascii_whitespace().count() == 1);
+        let one = !self.disabled.spring
+            && self.classes.attribute(element, "stiffness").is_some_and(|(text, _)| text.split_ascii_whitespace().count() == 1);
         let stiffness = one.then(|| self.number(element, "stiffness", "a stiffness", values)).flatten();
         let rest = self.number(element, "springref", "springref", values);
         let spring = values
@@ -485,53 +552,32 @@ impl Format for Mjcf<'_, '_> {
         self.joints[joint].joint.map_or_else(String::new, |element| shown(self.kind_word(element)))
     }
 
-    fn body(&self, link: usize, values: &mut Values<'_>) -> Option<(Vec<Pose>, Body)> {
-        let Held::Body(node) = self.links[link] else { return None };
+    fn bodies(&self, link: usize, values: &mut Values<'_>) -> Vec<Part> {
+        let Held::Body(node) = self.links[link] else { return Vec::new() };
         effects::refuse_compensation(node, values);
-        let inertial = child(node, "inertial")?;
-        let called = format!("the body `{}`", shown(node.attribute("name").unwrap_or_default()));
-        let element = Element { node: inertial, class: None };
-        if attribute(inertial, "mass").is_none() {
-            let message = format!("the mass of {called} is missing");
-            values.report(Code::MissingAttribute, place(inertial), message, "", "write `mass=\"1\"` in it");
+        match self.inertial(node) {
+            Some(inertial) => self.of_inertial(node, inertial, values).into_iter().collect(),
+            None => {
+                let parts = self.of_geometries(node, values);
+                if !parts.is_empty() {
+                    values.computed.push(shown(node.attribute("name").unwrap_or_default()));
+                }
+                parts
+            }
         }
-        let mass = self.number(element, "mass", &format!("the mass of {called}"), values);
-        let before = values.diagnostics.errors();
-        let mut poses = self.pose(element, &format!("the centre of mass of {called}"), values);
-        let tensor = |name: &str| attribute(inertial, name).map(|(_, span)| span);
-        let what = format!("the inertia of {called}");
-        let (elements, span) = if let Some(span) = tensor("fullinertia") {
-            (self.numbers::<6>(element, "fullinertia", &what, values), span)
-        } else if let Some(span) = tensor("diaginertia") {
-            let diagonal = self.numbers::<3>(element, "diaginertia", &what, values);
-            let zero = Decimal::zero;
-            (diagonal.map(|[xx, yy, zz]| [xx, yy, zz, zero(), zero(), zero()]), span)
-        } else {
-            let message = format!("{what} is missing");
-            let help = "write `diaginertia=\"1 1 1\"` or `fullinertia=\"1 1 1 0 0 0\"` in it";
-            values.report(Code::MissingAttribute, place(inertial), message, "", help);
-            (None, place(inertial))
-        };
-        let elements = elements?;
-        let readable = values.diagnostics.errors() == before;
-        // A tensor takes one rotation; more are the pose of a frame.
-        let (frame, com) = match poses.len() {
-            1 => (Vec::new(), poses.remove(0)),
-            _ => (poses, Pose::translation(nothing())),
-        };
-        Some((frame, values.body(&called, mass?, (com.xyz, com.turn), &elements, readable, span)))
     }
 
     fn has_body(&self, link: usize) -> bool {
-        matches!(self.links[link], Held::Body(node) if child(node, "inertial").is_some())
+        matches!(self.links[link], Held::Body(node) if self.inertial(node).is_some() || self.is_of_geometries(node))
     }
 
     fn may_be_massless(&self, link: usize) -> bool {
         matches!(self.links[link], Held::Passed)
     }
 
-    fn lacks_body(&self, link: usize) -> bool {
-        matches!(self.links[link], Held::Body(node) if self.is_of_geometries(node))
+    fn lacks_body(&self, link: usize) -> Option<String> {
+        let Held::Body(node) = self.links[link] else { return None };
+        self.without_formula(node)
     }
 
     fn gravity(&self, values: &mut Values<'_>) -> [Decimal; 3] {
@@ -541,11 +587,18 @@ impl Format for Mjcf<'_, '_> {
             if let Some(Some((given, _))) = values.vector::<3>(option, "gravity", "gravity") {
                 gravity = given;
             }
-            if child(option, "flag").and_then(|flag| flag.attribute("gravity")) == Some("disable") {
-                return std::array::from_fn(|_| Decimal::zero());
-            }
+        }
+        if self.disabled.gravity {
+            return std::array::from_fn(|_| Decimal::zero());
         }
         gravity
+    }
+
+    fn assumed(&self, moving: &[usize]) -> Vec<String> {
+        let joints = moving.iter().filter_map(|&joint| self.joints[joint].joint);
+        let named: Vec<(&str, Element<'_, '_>)> =
+            joints.map(|element| (element.node.attribute("name").unwrap_or_default(), element)).collect();
+        effects::switched_off(self, &named)
     }
 
     fn check(&self, extent: &Extent<'_>, diagnostics: &mut Diagnostics) {
@@ -555,6 +608,13 @@ impl Format for Mjcf<'_, '_> {
     fn left_out(&self) -> BTreeMap<String, usize> {
         self.left_out.get_or_init(|| effects::left_out(self.root)).clone()
     }
+}
+
+/// Whether no principal moment exceeds the sum of the other two: tr(I)/2 1 - I has no negative one.
+fn is_balanced([xx, yy, zz, xy, xz, yz]: &[Decimal; 6]) -> bool {
+    let [xx, yy, zz, xy, xz, yz] = [xx, yy, zz, xy, xz, yz].map(Decimal::exact);
+    let half = &(&(&xx + &yy) + &zz) * &Number::from(Rational::from(1) / Rational::from(2));
+    impossible_inertia(&[&half - &xx, -&xy, &half - &yy, -&xz, -&yz, &half - &zz]).is_none()
 }
 
 /// Its size.

@@ -4,7 +4,7 @@ use armgen_codegen::diagnostic::{Diagnostic, Diagnostics};
 use armgen_codegen::exact::{Number, Rational};
 use armgen_codegen::source::Span;
 
-use crate::xml::shown;
+use crate::xml::{is_use, shown};
 use crate::Code;
 
 /// Digits of a number.
@@ -69,9 +69,9 @@ pub(crate) fn decimal(word: &str, span: Span, what: &str, diagnostics: &mut Diag
         None
     };
     let word_shown = shown(word);
-    if word.contains("${") || word.contains("$(") {
-        diagnostics.push(crate::xml::xacro(span));
-        return None;
+    if is_use(word) {
+        let help = "write the file out and import that: `pip install xacro`, `xacro FILE.xacro > FILE.urdf`";
+        return fault(Code::Xacro, format!("{what} is `{word_shown}`: this is xacro, not a URDF"), "not written out", help);
     }
     let plain = word.trim_start_matches(['+', '-']).to_ascii_lowercase();
     if matches!(plain.as_str(), "nan" | "inf" | "infinity") {

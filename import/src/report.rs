@@ -17,6 +17,8 @@ pub struct Report {
     lines: Vec<String>,
     short: Vec<String>,
     attached: usize,
+    near: usize,
+    moved: f64,
 }
 
 /// So many names of a list on a terminal: a humanoid has a hundred joints beside an arm.
@@ -45,6 +47,16 @@ impl Report {
         self.lines.extend(more.iter().cloned());
         self.short.extend(more);
         self
+    }
+
+    /// How many angles are nearly, but not, multiples of pi/12, and taken as written.
+    pub fn near(&self) -> usize {
+        self.near
+    }
+
+    /// By how much the origin of the end effector moves at most for what was taken for what it means, m.
+    pub fn moved(&self) -> f64 {
+        self.moved
     }
 
     /// How many bodies are fixed to the links, which reading the description multiplies out.
@@ -81,8 +93,10 @@ pub(crate) fn of(source: &Source, format: &dyn Format, arm: &Arm, bound: Bound) 
         arm.rows.iter().map(|row| placed(row.span, vec![("name", json!(row.name)), ("source", json!(row.joint))])).collect();
     let rounded: Vec<Value> = if arm.gravity_rounded { vec![json!({"what": "gravity", "digits": 17})] } else { Vec::new() };
     let mut left_out = format.left_out();
-    if arm.boundless > 0 {
-        left_out.insert("position limits beyond any arm".to_owned(), arm.boundless);
+    for (what, count) in [("position limits beyond any arm", arm.boundless), ("effort limits of 0", arm.unknown_efforts)] {
+        if count > 0 {
+            left_out.insert(what.to_owned(), count);
+        }
     }
     let json = json!({
         "robot": arm.name,
@@ -104,7 +118,7 @@ pub(crate) fn of(source: &Source, format: &dyn Format, arm: &Arm, bound: Bound) 
     });
     let words = |most| words(source, arm, bound, &left_out, most);
     let attached = arm.rows.iter().map(|row| row.attached.len()).sum();
-    Report { lines: words(usize::MAX), short: words(NAMED), json, attached }
+    Report { lines: words(usize::MAX), short: words(NAMED), json, attached, near: arm.snap.near.len(), moved: bound.flange }
 }
 
 fn words(source: &Source, arm: &Arm, bound: Bound, left_out: &BTreeMap<String, usize>, most: usize) -> Vec<String> {
@@ -155,6 +169,12 @@ fn words(source: &Source, arm: &Arm, bound: Bound, left_out: &BTreeMap<String, u
     }
     if !arm.massless.is_empty() {
         lines.push(format!("links without mass: {}", names(arm.massless.iter().map(String::as_str).collect())));
+    }
+    if !arm.computed.is_empty() {
+        lines.push(format!(
+            "mass distributions computed from geometries: {}",
+            names(arm.computed.iter().map(String::as_str).collect())
+        ));
     }
     if !arm.impossible.is_empty() {
         lines.push(format!("inertias that no body has, taken as written: those of {}", arm.impossible.join(", ")));

@@ -48,11 +48,10 @@ pub(crate) fn warn_of_elements<'a, 'i: 'a>(
 }
 
 /// Warns of attributes of the given elements that nothing reads: with `iz` an inertia has no `izz`. Once for each spelling. Those with a prefix
-/// are another program's, and `refused` ones an error where they matter.
+/// are another program's.
 pub(crate) fn warn_of_attributes<'a, 'i: 'a>(
     nodes: impl Iterator<Item = Node<'a, 'i>>,
     known: &Known,
-    refused: &[&str],
     diagnostics: &mut Diagnostics,
 ) {
     let mut seen = BTreeSet::new();
@@ -60,7 +59,7 @@ pub(crate) fn warn_of_attributes<'a, 'i: 'a>(
         let element = node.tag_name().name();
         let Some(known) = known_of(known, element) else { continue };
         let lacking: Vec<&str> = known.iter().copied().filter(|name| attribute(node, name).is_none()).collect();
-        let is_unread = |name: &str| !known.contains(&name) && !refused.contains(&name);
+        let is_unread = |name: &str| !known.contains(&name);
         for found in node.attributes().filter(|found| found.namespace().is_none() && is_unread(found.name())) {
             let (name, place) = (found.name(), found.range_qname());
             let span = Span::new(place.start, place.end);

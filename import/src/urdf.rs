@@ -1,5 +1,7 @@
 //! URDF, as in <https://wiki.ros.org/urdf/XML>.
 
+mod felt;
+
 use std::collections::BTreeMap;
 
 use armgen_codegen::diagnostic::{Diagnostic, Diagnostics};
@@ -7,24 +9,31 @@ use armgen_codegen::source::Span;
 use roxmltree::Node;
 
 use crate::body::Body;
-use crate::format::{Extent, Format, Motion};
+use crate::format::{Extent, Format, Motion, Part};
 use crate::number::Decimal;
 use crate::pose::{nothing, Pose, Turn};
 use crate::tree::{Joint, Kind, Role, Tree};
 use crate::unread;
 use crate::values::Values;
 use crate::written::Written;
+use crate::xacro::is_of;
 use crate::xml::{attribute, child, place, shown};
 use crate::Code;
 
 /// Attributes of `inertia`, in the order of [`Body::inertia`].
 const ELEMENTS: [&str; 6] = ["ixx", "iyy", "izz", "ixy", "ixz", "iyz"];
-/// The rotation of an `origin` in URDF 1.2: x, y, z, w.
+/// The rotation of an `origin` since URDF 1.1: x, y, z, w.
 const QUATERNION: &str = "quat_xyzw";
+/// The newest minor version of URDF 1 that is known.
+const NEWEST: u32 = 2;
+/// Limits since URDF 1.2 for which a description has no key.
+const FURTHER_LIMITS: [&str; 3] = ["acceleration", "deceleration", "jerk"];
 
 /// A URDF.
 pub(crate) struct Urdf<'a, 'i> {
     root: Node<'a, 'i>,
+    /// The version is 1 and this.
+    minor: u32,
     /// By index in the tree.
     links: Vec<Node<'a, 'i>>,
     joints: Vec<Node<'a, 'i>>,
@@ -33,14 +42,10 @@ pub(crate) struct Urdf<'a, 'i> {
 /// The tree of a `robot`; `None` if it is none, which is reported.
 pub(crate) fn read<'a, 'i>(root: Node<'a, 'i>, diagnostics: &mut Diagnostics) -> Option<(Tree, Urdf<'a, 'i>)> {
     let mut tree = Tree::new(root.attribute("name").unwrap_or("robot"));
-    let mut urdf = Urdf { root, links: Vec::new(), joints: Vec::new() };
     let before = diagnostics.errors();
-    for node in root.children().filter(Node::is_element) {
-        if node.tag_name().namespace().is_some_and(|uri| uri.contains("xacro")) {
-            diagnostics.push(crate::xml::xacro(place(node)));
-        }
-    }
-    let of = |tag: &'static str| root.children().filter(move |n| n.is_element() && n.tag_name().name() == tag);
+    let minor = minor_version(root, diagnostics);
+    let mut urdf = Urdf { root, minor, links: Vec::new(), joints: Vec::new() };
+    let of = |tag: &'static str| root.children().filter(move |n| n.is_element() && n.tag_name().name() == tag && !is_of(*n));
     for node in of("link") {
         let Some((name, span)) = named(node, "a link", diagnostics) else { continue };
         if let Some(first) = tree.link(name) {
@@ -107,11 +112,7 @@ fn named<'a>(node: Node<'a, '_>, what: &str, diagnostics: &mut Diagnostics) -> O
         let help = format!("write `<{} name=\"...\">`", node.tag_name().name());
         diagnostics.push(Diagnostic::new(Code::MissingAttribute, place(node), format!("{what} has no name"), "", help));
     }
-    name.inspect(|(name, span)| {
-        if name.contains("${") || name.contains("$(") {
-            diagnostics.push(crate::xml::xacro(*span));
-        }
-    })
+    name
 }
 
 fn duplicate(what: &str, name: &str, span: Span, first: Span, diagnostics: &mut Diagnostics) {
@@ -135,16 +136,43 @@ fn kind(node: Node<'_, '_>, diagnostics: &mut Diagnostics) -> Option<Kind> {
     })
 }
 
-/// `origin` in an element: translation, and angles about x, y, z.
-fn origin_of(node: Node<'_, '_>, what: &str, values: &mut Values<'_>) -> ([Written; 3], [Written; 3]) {
-    let Some(origin) = child(node, "origin") else { return (nothing(), nothing()) };
-    if let Some((_, span)) = attribute(origin, QUATERNION) {
-        let help = "write the rotation as `rpy`, and take the quaternion out: URDF 1.0 does not read it";
-        values.report(Code::UrdfFeature, span, format!("{what} is turned by a quaternion"), "", help);
-    }
+/// `origin` in an element: translation and rotation, as angles about x, y, z or, since URDF 1.1, as a quaternion.
+fn origin_of(node: Node<'_, '_>, what: &str, minor: u32, values: &mut Values<'_>) -> ([Written; 3], Turn) {
+    let Some(origin) = child(node, "origin") else { return (nothing(), Turn::none()) };
     let xyz = values.three(origin, "xyz", what);
-    let rpy = values.three(origin, "rpy", what);
-    (xyz.each_ref().map(|x| values.snap.length(x)), rpy.each_ref().map(|x| values.snap.angle(x)))
+    let xyz = xyz.each_ref().map(|x| values.snap.length(x));
+    let quaternion = attribute(origin, QUATERNION);
+    if let Some((_, span)) = quaternion.filter(|_| minor < 1) {
+        let help = "write `version=\"1.1\"` in `robot` if that is meant: URDF 1.0 reads `rpy` alone";
+        values.report(Code::UrdfFeature, span, format!("{what} is turned by a quaternion, in a URDF 1.0"), "", help);
+    }
+    if let (Some((_, span)), Some((_, rpy))) = (quaternion, attribute(origin, "rpy")) {
+        let message = format!("{what} has two rotations, `rpy` and `{QUATERNION}`");
+        let fault = Diagnostic::new(Code::UrdfFeature, span, message, "the second one", "take one of them out");
+        values.diagnostics.push(fault.also(rpy, "the first one"));
+    }
+    let Some((_, span)) = quaternion else {
+        let rpy = values.three(origin, "rpy", what);
+        return (xyz, Turn::Rpy(rpy.each_ref().map(|angle| values.snap.angle(angle))));
+    };
+    let turn = values.vector::<4>(origin, QUATERNION, &format!("the rotation of {what}")).flatten();
+    let turn = turn.and_then(|([x, y, z, w], _)| values.quaternion(&[w, x, y, z], span, &format!("`{QUATERNION}` of {what}")));
+    (xyz, turn.unwrap_or_else(Turn::none))
+}
+
+/// The minor version of a URDF 1, 1.0 where none is given; another major one is warned of.
+fn minor_version(root: Node<'_, '_>, diagnostics: &mut Diagnostics) -> u32 {
+    let Some((text, span)) = attribute(root, "version") else { return 0 };
+    let (major, minor) = text.trim().split_once('.').unwrap_or((text.trim(), "0"));
+    match (major.parse::<u32>(), minor.parse::<u32>()) {
+        (Ok(1), Ok(minor)) => minor,
+        _ => {
+            let message = format!("the version `{}` of URDF is not known; the file is read as URDF 1.0", shown(text));
+            let help = "write the version that the file follows: `1.0`, `1.1` or `1.2`";
+            diagnostics.push(Diagnostic::new(Code::UnreadAttribute, span, message, "not known", help));
+            0
+        }
+    }
 }
 
 /// An element of `inertial`; one that is not there is reported.
@@ -167,6 +195,31 @@ impl Urdf<'_, '_> {
         let node = child(self.joints[joint], element)?;
         values.scalar(node, name, &format!("`{name}` of joint `{}`", self.name_of(joint)))
     }
+
+    /// The mass distribution of a link; `None` if it has none, or a faulty one, which is reported.
+    fn body(&self, link: usize, values: &mut Values<'_>) -> Option<Body> {
+        let inertial = child(self.links[link], "inertial")?;
+        let called = format!("the link `{}`", shown(self.links[link].attribute("name").unwrap_or_default()));
+        let (com, turn) = origin_of(inertial, &format!("the centre of mass of {called}"), self.minor, values);
+        let mass = required(inertial, "mass", "value=\"1\"", values)?;
+        if attribute(mass, "value").is_none() {
+            let help = "write `<mass value=\"1\"/>`";
+            values.report(Code::MissingAttribute, place(mass), format!("the mass of {called} has no value"), "", help);
+        }
+        let mass = values.scalar(mass, "value", &format!("the mass of {called}"));
+        let example = "ixx=\"1\" ixy=\"0\" ixz=\"0\" iyy=\"1\" iyz=\"0\" izz=\"1\"";
+        let tensor = required(inertial, "inertia", example, values)?;
+        let missing: Vec<&str> = ELEMENTS.into_iter().filter(|name| attribute(tensor, name).is_none()).collect();
+        if !missing.is_empty() {
+            let message = format!("the inertia of {called} lacks {}, taken as 0", missing.join(", "));
+            values.report(Code::MissingElementOfInertia, place(tensor), message, "", "write all six elements");
+        }
+        let before = values.diagnostics.errors();
+        let elements =
+            ELEMENTS.map(|name| values.scalar(tensor, name, &format!("`{name}` of {called}")).unwrap_or_else(Decimal::zero));
+        let readable = values.diagnostics.errors() == before;
+        Some(values.body(&called, mass?, (com, turn), &elements, readable, place(tensor)))
+    }
 }
 
 impl Format for Urdf<'_, '_> {
@@ -175,8 +228,8 @@ impl Format for Urdf<'_, '_> {
     }
 
     fn origin(&self, joint: usize, values: &mut Values<'_>) -> Vec<Pose> {
-        let (xyz, rpy) = origin_of(self.joints[joint], "the origin of a joint", values);
-        vec![Pose { xyz, turn: Turn::Rpy(rpy) }]
+        let (xyz, turn) = origin_of(self.joints[joint], "the origin of a joint", self.minor, values);
+        vec![Pose { xyz, turn }]
     }
 
     fn axis(&self, joint: usize, values: &mut Values<'_>) -> Option<([Written; 3], f64)> {
@@ -210,7 +263,7 @@ impl Format for Urdf<'_, '_> {
             axis,
             axis_offset,
             position,
-            velocity: values.largest_velocity(velocity, name),
+            velocity: values.largest_velocity(velocity, node.attribute("type") == Some("prismatic"), name),
             effort: values.largest(effort, "effort", name),
             viscous: values.coefficient(viscous, name),
             coulomb: values.coefficient(coulomb, name),
@@ -240,28 +293,9 @@ impl Format for Urdf<'_, '_> {
         (factor, values.scalar(mimic, "offset", "the offset of `mimic`").unwrap_or_else(Decimal::zero))
     }
 
-    fn body(&self, link: usize, values: &mut Values<'_>) -> Option<(Vec<Pose>, Body)> {
-        let inertial = child(self.links[link], "inertial")?;
-        let called = format!("the link `{}`", shown(self.links[link].attribute("name").unwrap_or_default()));
-        let (com, rpy) = origin_of(inertial, &format!("the centre of mass of {called}"), values);
-        let mass = required(inertial, "mass", "value=\"1\"", values)?;
-        if attribute(mass, "value").is_none() {
-            let help = "write `<mass value=\"1\"/>`";
-            values.report(Code::MissingAttribute, place(mass), format!("the mass of {called} has no value"), "", help);
-        }
-        let mass = values.scalar(mass, "value", &format!("the mass of {called}"));
-        let example = "ixx=\"1\" ixy=\"0\" ixz=\"0\" iyy=\"1\" iyz=\"0\" izz=\"1\"";
-        let tensor = required(inertial, "inertia", example, values)?;
-        let missing: Vec<&str> = ELEMENTS.into_iter().filter(|name| attribute(tensor, name).is_none()).collect();
-        if !missing.is_empty() {
-            let message = format!("the inertia of {called} lacks {}, taken as 0", missing.join(", "));
-            values.report(Code::MissingElementOfInertia, place(tensor), message, "", "write all six elements");
-        }
-        let before = values.diagnostics.errors();
-        let elements =
-            ELEMENTS.map(|name| values.scalar(tensor, name, &format!("`{name}` of {called}")).unwrap_or_else(Decimal::zero));
-        let readable = values.diagnostics.errors() == before;
-        Some((Vec::new(), values.body(&called, mass?, (com, Turn::Rpy(rpy)), &elements, readable, place(tensor))))
+    fn bodies(&self, link: usize, values: &mut Values<'_>) -> Vec<Part> {
+        let body = self.body(link, values);
+        body.map(|body| Part { name: None, frame: Vec::new(), body }).into_iter().collect()
     }
 
     fn has_body(&self, link: usize) -> bool {
@@ -284,6 +318,14 @@ impl Format for Urdf<'_, '_> {
         };
         let axes = lacking("axis", &|_| true);
         let limits = lacking("limit", &|kind| kind != "continuous");
+        let further = |joint: &usize| {
+            let limit = child(self.joints[*joint], "limit")?;
+            let given = FURTHER_LIMITS.into_iter().filter_map(|name| Some(format!("`{name}` {}", shown(limit.attribute(name)?))));
+            let given: Vec<String> = given.collect();
+            (!given.is_empty()).then(|| format!("{} of `{}`", given.join(", "), self.name_of(*joint)))
+        };
+        let further: Vec<String> = moving.iter().filter_map(further).collect();
+        let newer = (self.minor > NEWEST).then(|| format!("the file is of URDF 1.{}, of which 1.{NEWEST} is read", self.minor));
         let gravity = "a URDF does not say how the arm stands: gravity is 9.81 m/s² against z of its root link; turn `gravity` for another one";
         [
             Some(gravity.to_owned()),
@@ -291,46 +333,23 @@ impl Format for Urdf<'_, '_> {
             limits.map(|names| {
                 format!("without `limit`, taken to have none (bounds take ±π rad or ±1 m, 4 rad/s or 1 m/s): {names}")
             }),
+            (!further.is_empty()).then(|| format!("limits left out, for which a description has no key: {}", further.join("; "))),
+            newer,
         ]
         .into_iter()
         .flatten()
         .collect()
     }
 
-    /// Warns of what a simulator would take into account of joints and links that the arm has, and robot.yaml does not; once a kind.
+    /// Warns of what would move the arm otherwise and robot.yaml does not hold; once a kind, with the values.
     fn check(&self, extent: &Extent<'_>, diagnostics: &mut Diagnostics) {
         warn_of_unread(self.root, diagnostics);
-        const FELT: [&str; 6] = [
-            "springStiffness",
-            "springReference",
-            "implicitSpringDamper",
-            "disableFixedJointLumping",
-            "preserveFixedJoint",
-            "gravity",
-        ];
-        let concerns = |name: &str| {
-            let joint = extent.tree.joint(name).map(|joint| extent.moving.contains(&joint));
-            let link = extent.tree.link(name).map(|link| extent.carriers.contains_key(&link));
-            joint == Some(true) || link == Some(true)
-        };
-        let mut kinds: BTreeMap<&str, Vec<Span>> = BTreeMap::new();
-        for node in self.root.children().filter(|n| n.is_element() && n.tag_name().name() == "gazebo") {
-            if node.attribute("reference").is_some_and(|name| !concerns(name)) {
-                continue;
-            }
-            for felt in node.descendants().filter(|n| n.is_element() && FELT.contains(&n.tag_name().name())) {
-                kinds.entry(felt.tag_name().name()).or_default().push(place(felt));
-            }
-        }
-        for (kind, places) in kinds {
-            let more = match places.len() {
-                1 => String::new(),
-                n => format!(", {n} times"),
-            };
-            let message = format!("`{kind}` may change how a simulator moves the arm; it is left out{more}");
-            let help = "springs and the like are no part of a description of a rigid arm: add their torques yourself";
-            diagnostics.push(Diagnostic::new(Code::ChangesMotion, places[0], message, "left out", help));
-        }
+        felt::warn(self.root, extent, diagnostics);
+    }
+
+    fn mass(&self, link: usize) -> f64 {
+        let mass = child(self.links[link], "inertial").and_then(|inertial| child(inertial, "mass"));
+        mass.and_then(|mass| mass.attribute("value")?.trim().parse().ok()).unwrap_or(0.0)
     }
 
     fn left_out(&self) -> BTreeMap<String, usize> {
@@ -338,6 +357,7 @@ impl Format for Urdf<'_, '_> {
         let mut count = |name: &str| *counts.entry(name.to_owned()).or_default() += 1;
         for node in self.root.children().filter(Node::is_element) {
             match node.tag_name().name() {
+                other if is_of(node) => count(&format!("xacro:{other} that nothing uses")),
                 "link" => node
                     .children()
                     .filter(|n| n.is_element() && n.tag_name().name() != "inertial")
@@ -380,11 +400,11 @@ const SINGLE: [(&str, &[&str]); 3] = [("link", &["inertial"]), ("joint", &TAKEN)
 
 /// Attributes of elements that say how the arm is made.
 const ATTRIBUTES_OF: [(&str, &[&str]); 7] = [
-    ("origin", &["xyz", "rpy"]),
+    ("origin", &["xyz", "rpy", QUATERNION]),
     ("axis", &["xyz"]),
     ("mass", &["value"]),
     ("inertia", &ELEMENTS),
-    ("limit", &["lower", "upper", "effort", "velocity"]),
+    ("limit", &["lower", "upper", "effort", "velocity", "acceleration", "deceleration", "jerk"]),
     ("dynamics", &["damping", "friction"]),
     ("mimic", &["joint", "multiplier", "offset"]),
 ];
@@ -395,5 +415,5 @@ fn warn_of_unread(root: Node<'_, '_>, diagnostics: &mut Diagnostics) {
     let inside = parts.clone().chain(parts.flat_map(|part| part.children()).filter(|n| n.tag_name().name() == "inertial"));
     unread::warn_of_elements(std::iter::once(root).chain(inside.clone()), &ELEMENTS_OF, diagnostics);
     unread::warn_of_repeated(inside.clone(), &SINGLE, diagnostics);
-    unread::warn_of_attributes(inside.flat_map(|part| part.children()), &ATTRIBUTES_OF, &[QUATERNION], diagnostics);
+    unread::warn_of_attributes(inside.flat_map(|part| part.children()), &ATTRIBUTES_OF, diagnostics);
 }

@@ -1,13 +1,15 @@
 //! Attributes as numbers, with what must hold for them.
 
 use armgen_codegen::diagnostic::{Diagnostic, Diagnostics};
+use armgen_codegen::exact::Rational;
 use armgen_codegen::source::{Source, Span};
 use roxmltree::Node;
 
-use crate::number::{decimal, Decimal};
+use crate::number::{decimal, ending, Decimal};
+use crate::pose::Turn;
 use crate::snap::Snap;
 use crate::written::Written;
-use crate::xml::{attribute, shown};
+use crate::xml::{attribute, is_use, shown};
 use crate::Code;
 
 /// Reads numbers, reports faults, snaps.
@@ -18,12 +20,21 @@ pub(crate) struct Values<'r> {
     pub(crate) inertia_as_written: bool,
     /// What has a tensor that no body has.
     pub(crate) impossible: Vec<String>,
+    /// Bodies whose mass distributions are computed from geometries.
+    pub(crate) computed: Vec<String>,
     /// How many position limits were left out since no arm has such.
     pub(crate) boundless: usize,
+    /// Whether no link of the file has a mass distribution.
+    pub(crate) kinematics_alone: bool,
+    /// How many efforts of 0 were left out of such a file.
+    pub(crate) unknown_efforts: usize,
 }
 
 /// A position limit, rad or m, that no arm has: files write 1e16 or the largest float where a joint has none.
 const BOUNDLESS: f64 = 1e6;
+/// A rate in rad/s, and one in m/s, beyond which no joint of an arm moves.
+const FASTEST_TURN: f64 = 60.0;
+const FASTEST_SLIDE: f64 = 20.0;
 
 impl Values<'_> {
     pub(crate) fn report(&mut self, code: Code, span: Span, message: impl Into<String>, label: &str, help: impl Into<String>) {
@@ -44,7 +55,7 @@ impl Values<'_> {
     /// Exactly N numbers of a text; `None` with a reported fault.
     pub(crate) fn list<const N: usize>(&mut self, text: &str, span: Span, name: &str, what: &str) -> Option<[Decimal; N]> {
         let words: Vec<&str> = text.split_ascii_whitespace().collect();
-        if words.len() != N && !text.contains("${") && !text.contains("$(") {
+        if words.len() != N && !is_use(text) {
             let message = format!("{what} has {} of {N} {}", words.len(), if N == 1 { "number" } else { "numbers" });
             let help = format!("write {N}, with blanks between them: `{name}=\"{}\"`", ["0"; N].join(" "));
             self.report(Code::WrongLength, span, message, "", help);
@@ -91,6 +102,16 @@ impl Values<'_> {
             return None;
         }
         Some(self.snap.direction(axis, span))
+    }
+
+    /// The rotation of a quaternion w, x, y, z; `None` if it is 0, which is reported.
+    pub(crate) fn quaternion(&mut self, quat: &[Decimal; 4], span: Span, what: &str) -> Option<Turn> {
+        if quat.iter().all(Decimal::is_zero) {
+            let help = "a quaternion without rotation is 1 in w and 0 in x, y and z";
+            self.report(Code::ZeroAxis, span, format!("{what} is 0, which is no rotation"), "all four are 0", help);
+            return None;
+        }
+        Some(self.snap.quaternion(quat, span))
     }
 
     /// Position limits; `None` where there are none, where one of them is beyond any arm, or faulty and reported.
@@ -140,29 +161,49 @@ impl Values<'_> {
         if value.value > 0.0 {
             return Some(value);
         }
+        // Where nothing has mass, no torque is meant.
+        if self.kinematics_alone && what == "effort" {
+            self.unknown_efforts += 1;
+            return None;
+        }
         let message = format!("the {what} limit of joint `{}` is {}, which is taken as unknown", shown(joint), value.text);
         self.report(Code::ZeroLimit, value.span, message, "left out", "give the largest size that is allowed");
         None
     }
 
-    /// A largest velocity; a hundred, a thousand and so on, which files give where none is known, are taken as unknown, too.
+    /// A largest velocity; one that no joint reaches is taken as unknown, too: no bound is computed from it.
     ///
-    /// A URDF cannot leave the velocity out. No joint turns at 100 rad/s or slides at 100 m/s, and of limits in degrees few are such numbers.
-    pub(crate) fn largest_velocity(&mut self, value: Option<Decimal>, joint: &str) -> Option<Decimal> {
+    /// A URDF cannot leave the velocity out, so files have 100, 1000 or 50000 where none is known. The limits are those beyond which a
+    /// description is warned of.
+    pub(crate) fn largest_velocity(&mut self, value: Option<Decimal>, slides: bool, joint: &str) -> Option<Decimal> {
         let value = self.largest(value, "velocity", joint)?;
+        let (fastest, unit) = if slides { (FASTEST_SLIDE, "m/s") } else { (FASTEST_TURN, "rad/s") };
+        if value.value <= fastest {
+            return Some(value);
+        }
+        let message = format!(
+            "the velocity limit of joint `{}` is {} {unit}, which no joint of an arm reaches: it is taken as unknown",
+            shown(joint),
+            value.text
+        );
+        // What is suggested is a limit itself.
+        let instead = match slides {
+            true => value.exact().as_rational().and_then(|v| ending(&(v.clone() / Rational::from(1000)))),
+            false => Some(format!("deg({})", value.text)),
+        };
+        let size = if slides { value.value / 1e3 } else { value.value.to_radians() };
         let mut power = 100.0;
         while power < value.value {
             power *= 10.0;
         }
-        if power != value.value {
-            return Some(value);
-        }
-        let message = format!(
-            "the velocity limit of joint `{}` is {}, which no joint reaches: it is taken as unknown",
-            shown(joint),
-            value.text
-        );
-        let help = "give the largest rate in rad/s, or m/s; URDFs have such a number where none is known";
+        let known = format!("give the largest rate in {unit}; files have such a number where none is known");
+        let help = match instead.filter(|_| size <= fastest && power != value.value) {
+            Some(instead) => format!(
+                "if it is in {}, write `velocity: {instead}` among the `limits` of the joint in robot.yaml",
+                if slides { "mm/s" } else { "degrees per second" }
+            ),
+            None => known,
+        };
         self.report(Code::PlaceholderLimit, value.span, message, "left out", help);
         None
     }

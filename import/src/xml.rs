@@ -3,6 +3,8 @@
 //! A scan of the text, linear in its length, counts elements, attributes of one element, nesting and declarations of namespaces; what exceeds
 //! the bounds is never given to the parser, whose search for duplicate attributes is quadratic, and which keeps all namespaces at each element.
 
+use std::borrow::Cow;
+
 use armgen_codegen::diagnostic::{Diagnostic, Diagnostics};
 use armgen_codegen::source::{Source, Span};
 use roxmltree::{Document, Error, Node, ParsingOptions};
@@ -20,15 +22,60 @@ pub(crate) const MAX_DEPTH: usize = 256;
 /// Declarations of namespaces.
 const MAX_NAMESPACES: usize = 100;
 
-/// The tree of a text; `None` with the fault reported.
-pub(crate) fn parse<'s>(source: &'s Source, diagnostics: &mut Diagnostics) -> Option<Document<'s>> {
-    if let Err((at, what)) = scan(source.text()) {
+/// A text whose harmless slips are blanks, so that all places stay: an XML declaration behind blank lines or comments, and `--` in a comment.
+/// XML allows neither; the parsers of ROS and MuJoCo read both.
+pub(crate) fn without_harmless_slips(text: &str) -> Cow<'_, str> {
+    let mut blanks: Vec<(usize, usize)> = Vec::new();
+    let (mut end, mut at_top) = (0, true);
+    for tag in (Tags { text, at: 0 }) {
+        let (start, next) = match tag {
+            Tag::Comment { start, end } | Tag::Instruction { start, end } => (start, end),
+            Tag::Opening { start, .. } | Tag::Closing { start } => (start, start),
+        };
+        at_top &= text[end..start].trim().is_empty();
+        match tag {
+            Tag::Comment { start, end } => {
+                let inside = (start + 4).min(end)..end.saturating_sub(3).max(start + 4).min(end);
+                let bytes = &text.as_bytes()[inside.clone()];
+                let slips = |&k: &usize| {
+                    bytes[k] == b'-' && (bytes.get(k + 1).is_none_or(|&next| next == b'-') || (k > 0 && bytes[k - 1] == b'-'))
+                };
+                blanks.extend((0..bytes.len()).filter(slips).map(|k| (inside.start + k, inside.start + k + 1)));
+            }
+            Tag::Instruction { start, end } if start > 0 && at_top && is_declaration(&text[start..end]) => {
+                blanks.push((start, end));
+            }
+            _ => {}
+        }
+        end = next;
+        at_top &= matches!(tag, Tag::Comment { .. });
+    }
+    if blanks.is_empty() {
+        return Cow::Borrowed(text);
+    }
+    let mut bytes = text.as_bytes().to_vec();
+    blanks.into_iter().for_each(|(start, end)| bytes[start..end].fill(b' '));
+    String::from_utf8(bytes).map_or(Cow::Borrowed(text), Cow::Owned)
+}
+
+/// Whether an instruction is the declaration of XML.
+fn is_declaration(instruction: &str) -> bool {
+    instruction.strip_prefix("<?xml").is_some_and(|rest| rest.starts_with(char::is_whitespace))
+}
+
+/// The tree of a text, that of the source with blanks in it; `None` with the fault reported.
+pub(crate) fn parse<'s>(text: &'s str, source: &Source, diagnostics: &mut Diagnostics) -> Option<Document<'s>> {
+    if let Err((at, what)) = scan(text) {
         let help = "an arm's file has far less: take out what is not about links and joints";
         diagnostics.push(Diagnostic::new(Code::TooLarge, Span::new(at, at), format!("the file has {what}"), "", help));
         return None;
     }
+    if let Some(fault) = description_instead(source) {
+        diagnostics.push(fault);
+        return None;
+    }
     let options = ParsingOptions { allow_dtd: false, nodes_limit: u32::MAX, ..ParsingOptions::default() };
-    match Document::parse_with_options(source.text(), options) {
+    match Document::parse_with_options(text, options) {
         Ok(document) => Some(document),
         Err(error) => {
             diagnostics.push(refusal(source, &error));
@@ -43,6 +90,9 @@ fn refusal(source: &Source, error: &Error) -> Diagnostic {
     let ends = matches!(error, Error::UnclosedRootNode | Error::UnexpectedEndOfStream);
     let at = if ends { text.trim_end().char_indices().last().map_or(0, |(at, _)| at) } else { offset(source, error.pos()) };
     let span = Span::new(at, character_end(text, at));
+    if let Some(fault) = conflict(text) {
+        return fault;
+    }
     if let Some((message, help)) = entity(text, at, error) {
         return Diagnostic::new(Code::XmlSyntax, span, message, "here", help);
     }
@@ -58,12 +108,18 @@ fn refusal(source: &Source, error: &Error) -> Diagnostic {
             .also(span, if ends { "the file ends here" } else { "this cannot stand inside it" });
     }
     let (code, message, help) = match error {
-        Error::UnknownNamespace(prefix, _) if prefix == "xacro" => return xacro(span),
+        Error::UnknownNamespace(prefix, _) if prefix == "xacro" => return xacro(span, source),
         Error::UnknownNamespace(prefix, _) => (
             Code::XmlSyntax,
             format!("the prefix `{}` has no namespace", shown(prefix)),
             "take elements and attributes with this prefix out, or declare it with `xmlns:`".to_owned(),
         ),
+        Error::UnexpectedDeclaration(_) => (
+            Code::XmlSyntax,
+            "the XML declaration does not begin the file".to_owned(),
+            "take out what stands before `<?xml ...?>`, or the declaration itself: nothing needs it".to_owned(),
+        ),
+        Error::UnknownToken(_) if outside(text, at).is_some() => return outside(text, at).expect("it was there"),
         Error::DtdDetected => (
             Code::XmlSyntax,
             "a document type definition stands here".to_owned(),
@@ -152,10 +208,112 @@ fn unescaped(text: &str, opened: usize, at: usize) -> Option<(char, &'static str
     }
 }
 
-/// A part of xacro at a place.
-pub(crate) fn xacro(span: Span) -> Diagnostic {
-    let help = "write the file out first: `xacro FILE.xacro > FILE.urdf`";
-    Diagnostic::new(Code::Xacro, span, "this is a part of xacro, not of a URDF", "not written out", help)
+/// Whether a text uses a property or an argument of xacro.
+pub(crate) fn is_use(text: &str) -> bool {
+    text.contains("${") || text.contains("$(")
+}
+
+/// A use of xacro at a place.
+pub(crate) fn xacro(span: Span, source: &Source) -> Diagnostic {
+    let name = source.name().rsplit(['/', '\\']).next().unwrap_or_default();
+    // Standard input has no name that can be typed.
+    let name = if name.contains(' ') { "ARM.urdf.xacro" } else { name };
+    let stem = name.strip_suffix(".xacro").unwrap_or(name);
+    let stem = stem.strip_suffix(".urdf").unwrap_or(stem);
+    let out = if name == format!("{stem}.urdf") { format!("{stem}_full.urdf") } else { format!("{stem}.urdf") };
+    let help = format!("write the file out and import that: `pip install xacro`, `xacro {} > {}`", shown(name), shown(&out));
+    Diagnostic::new(Code::Xacro, span, "this is xacro, not a URDF", "not written out", help)
+}
+
+/// A description where a URDF is asked for.
+fn description_instead(source: &Source) -> Option<Diagnostic> {
+    let text = source.text();
+    if text.trim_start().starts_with('<') {
+        return None;
+    }
+    let key = |line: &&str| ["name:", "convention:", "joints:", "gravity:"].iter().any(|key| line.starts_with(key));
+    let line = text.lines().find(key)?;
+    let start = line.as_ptr() as usize - text.as_ptr() as usize;
+    let message = "this is a description already, not a URDF or a MuJoCo model";
+    let help = format!("type `armgen check {}`", source.name());
+    let span = Span::new(start, start + line.find(':').unwrap_or_default());
+    Some(Diagnostic::new(Code::XmlSyntax, span, message, "a key of robot.yaml", help))
+}
+
+/// Both sides of a merge in one file.
+fn conflict(text: &str) -> Option<Diagnostic> {
+    let line = text.lines().find(|line| line.starts_with("<<<<<<<"))?;
+    let start = line.as_ptr() as usize - text.as_ptr() as usize;
+    let message = "the file holds both sides of a merge that was not finished";
+    let help = "keep one of the sides between `<<<<<<<` and `>>>>>>>`, and take the three lines of marks out";
+    Some(Diagnostic::new(Code::XmlSyntax, Span::new(start, start + 7), message, "a merge conflict begins here", help))
+}
+
+/// What is wrong at a place outside of the root element.
+fn outside(text: &str, at: usize) -> Option<Diagnostic> {
+    let name_at = |start: usize| {
+        let name = &text[start + 1..];
+        &name[..name.find(|c: char| c.is_whitespace() || matches!(c, '>' | '/')).unwrap_or(name.len())]
+    };
+    let (mut depth, mut root, mut closing) = (0usize, None, None);
+    for tag in (Tags { text, at: 0 }) {
+        match tag {
+            Tag::Opening { start, .. } if closing.is_some() => {
+                if start < at {
+                    return None;
+                }
+                break;
+            }
+            Tag::Opening { start, empty, .. } => {
+                root = root.or(Some(start));
+                depth += usize::from(!empty);
+                closing = (depth == 0).then_some(start);
+            }
+            Tag::Closing { start } => {
+                depth = depth.saturating_sub(1);
+                closing = (depth == 0).then_some(start);
+            }
+            Tag::Comment { .. } | Tag::Instruction { .. } => {}
+        }
+        if closing.is_some() && root.is_some_and(|root| at < root) {
+            break;
+        }
+    }
+    let root = root?;
+    let named = |start: usize| Span::new(start + 1, start + 1 + name_at(start).len());
+    let first = shown(name_at(root));
+    if at < root {
+        let message = format!("text stands before the first element, `{first}`");
+        let help = "take it out: an XML file begins with `<?xml ...?>`, a comment or its root element";
+        return Some(Diagnostic::new(Code::XmlSyntax, Span::new(at, character_end(text, at)), message, "here", help));
+    }
+    let closing = closing.filter(|&closing| closing < at)?;
+    let (span, message, help) = match text[at..].starts_with('<') {
+        true if name_at(at) == name_at(root) => {
+            let called = |start: usize| called(&text[start..]).map_or(String::new(), |name| format!(" `{}`", shown(name)));
+            let message = format!("the file holds two of `{first}`:{} and{}", called(root), called(at));
+            (named(at), message, format!("put the second one into a file of its own: a file has one `{first}`"))
+        }
+        true => {
+            let second = shown(name_at(at));
+            let message = format!("`{second}` stands behind the end of `{first}`");
+            (named(at), message, format!("move `</{first}>` to the end of the file, or take what follows it out"))
+        }
+        false => {
+            let message = format!("text stands behind the end of `{first}`");
+            (Span::new(at, character_end(text, at)), message, "take it out".to_owned())
+        }
+    };
+    let ended = Span::new(closing, character_end(text, closing));
+    Some(Diagnostic::new(Code::XmlSyntax, span, message, "here", help).also(ended, "the first element ends here"))
+}
+
+/// The `name` or `model` in the tag that a text begins with.
+fn called(text: &str) -> Option<&str> {
+    let tag = &text[..text.find('>')?];
+    let value = ["name=", "model="].iter().find_map(|key| tag.split_once(key)).map(|(_, value)| value.trim_start())?;
+    let quote = value.chars().next().filter(|quote| matches!(quote, '"' | '\''))?;
+    value[1..].split(quote).next()
 }
 
 /// The byte at a line and column of the parser, both from 1.
@@ -178,6 +336,10 @@ enum Tag {
     Opening { start: usize, attributes: usize, namespaces: usize, empty: bool },
     /// `</name>`.
     Closing { start: usize },
+    /// `<!-- ... -->`.
+    Comment { start: usize, end: usize },
+    /// `<? ... ?>`.
+    Instruction { start: usize, end: usize },
 }
 
 /// The tags of a text, well-formed or not, in one pass.
@@ -196,11 +358,15 @@ impl Iterator for Tags<'_> {
             let start = self.at + text[self.at..].find('<')?;
             let rest = &bytes[start..];
             self.at = if rest.starts_with(b"<!--") {
-                after(start + 4, "-->")
+                let end = after(start + 4, "-->");
+                self.at = end;
+                return Some(Tag::Comment { start, end });
             } else if rest.starts_with(b"<![CDATA[") {
                 after(start + 9, "]]>")
             } else if rest.starts_with(b"<?") {
-                after(start + 2, "?>")
+                let end = after(start + 2, "?>");
+                self.at = end;
+                return Some(Tag::Instruction { start, end });
             } else if rest.starts_with(b"</") {
                 self.at = after(start + 2, ">");
                 return Some(Tag::Closing { start });
@@ -241,7 +407,7 @@ fn scan(text: &str) -> Result<(), (usize, String)> {
     let (mut elements, mut declared, mut depth) = (0, 0, 0usize);
     for tag in (Tags { text, at: 0 }) {
         let Tag::Opening { start, attributes, namespaces, empty } = tag else {
-            depth = depth.saturating_sub(1);
+            depth = depth.saturating_sub(usize::from(matches!(tag, Tag::Closing { .. })));
             continue;
         };
         elements += 1;
@@ -272,6 +438,7 @@ fn still_open(text: &str, before: usize) -> Option<Span> {
             Tag::Opening { empty: true, .. } => {}
             Tag::Opening { start, .. } => open.push(start),
             Tag::Closing { .. } => _ = open.pop(),
+            Tag::Comment { .. } | Tag::Instruction { .. } => {}
         }
     }
     let start = open.pop()? + 1;

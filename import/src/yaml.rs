@@ -83,7 +83,7 @@ fn joint(line: &mut impl FnMut(&str), source: &Source, arm: &Arm, row: &Row) {
     }
     for other in &row.attached {
         let at = source.place(other.span.start).line;
-        line(&format!("        - name: {}  # line {at}", quoted(&other.link)));
+        line(&format!("        - name: {}  # line {at}", quoted(&other.name)));
         if !is_identity(&other.origin) {
             line(&format!("          origin: {}{}", poses(&other.origin), snapped(source, arm, &spans_of(&other.origin))));
         }

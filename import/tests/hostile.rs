@@ -1,5 +1,6 @@
 //! Texts that are made to be difficult: refused with a place, in bounded time, or imported.
 
+use armgen_codegen::diagnostic::Colour;
 use armgen_codegen::source::Source;
 use armgen_import::{import, Code, Options};
 
@@ -197,7 +198,7 @@ fn a_long_line_of_joints_is_walked_without_recursion() {
             "<link name='l{k}'/><joint name='j{k}' type='{kind}'><parent link='l{before}'/><child link='l{k}'/></joint>"
         );
     }
-    check(format!("{text}</robot>"), Some(Code::MissingInertial));
+    check(format!("{text}</robot>"), None);
 }
 
 #[test]
@@ -273,4 +274,76 @@ fn names_within_what_stands_for_others_are_not_read() {
     let said = said(&format!("<mujoco><worldbody>{composite}</worldbody></mujoco>"));
     assert!(said.iter().any(|(code, _)| *code == "mjcf-feature"), "{said:?}");
     assert!(!said.iter().any(|(code, _)| code.starts_with("misspelt") || code.starts_with("unread")), "{said:?}");
+}
+
+/// What parsers of ROS and MuJoCo read all the same: places stay, and so does the arm.
+#[test]
+fn harmless_slips_of_xml_are_read() {
+    let model = arm("<axis xyz='0 1 0'/>");
+    let yaml = |text: &str| {
+        let (imported, diagnostics) = import(&Source::new("robot.urdf", text), &Options::default());
+        let yaml = imported.map(|imported| imported.yaml);
+        yaml.unwrap_or_else(|| panic!("{text}: {}", diagnostics.render(&Source::new("robot.urdf", text), Colour::Never)))
+    };
+    let expected = yaml(&model);
+    let declaration = "<?xml version=\"1.0\" encoding=\"utf-8\"?>";
+    for before in
+        ["", " ", "<!-- é -->", "<!-- a -- b -->", "<!---->", "<!----->", "<!-- a --->", "<!--- <link name=\"x\"/> - -- --- -->"]
+    {
+        assert_eq!(yaml(&format!("{before}{model}")), expected, "{before}");
+        assert_eq!(yaml(&format!("{before}{declaration}{model}")), expected, "{before}");
+        assert_eq!(yaml(&model.replace("<joint", &format!("{before}<joint"))), expected, "{before}");
+    }
+    check(format!("{declaration}{declaration}{model}"), Some(Code::XmlSyntax));
+    check(format!("<!-- {model}"), Some(Code::XmlSyntax));
+    check("<!--", Some(Code::XmlSyntax));
+    check("<!-->", Some(Code::XmlSyntax));
+    check("<!--->", Some(Code::XmlSyntax));
+    check("<!-- -->", Some(Code::XmlSyntax));
+}
+
+/// Definitions that nothing uses mean nothing; a use of any, wherever the arm is made of it, is told once.
+#[test]
+fn what_is_left_of_xacro_is_left_out() {
+    let model = arm("<axis xyz='0 1 0'/>").replacen("<robot", "<robot xmlns:xacro='http://www.ros.org/wiki/xacro'", 1);
+    let with = |element: &str| model.replace("</robot>", &format!("{element}</robot>"));
+    for unused in [
+        "<xacro:property name='width' value='.2'/>",
+        "<xacro:arg name='prefix' default=''/>",
+        "<xacro:macro name='m' params='l'><link name='${l}'/></xacro:macro>",
+        "<link name='seen'><visual><xacro:shape size='${width}'/></visual></link><joint name='f' type='fixed'><parent link='one'/><child link='seen'/></joint>",
+        "<gazebo><plugin><robotNamespace>${name}</robotNamespace></plugin></gazebo>",
+        // Nothing of the arm depends on where a sensor of the base is.
+        "<link name='imu'/><joint name='m' type='fixed'><parent link='base'/><child link='imu'/><origin xyz='$(optenv PLACE 0 0 1)'/></joint>",
+    ] {
+        let source = Source::new("robot.urdf", with(unused));
+        let (imported, diagnostics) = import(&source, &Options::default());
+        let report = imported.unwrap_or_else(|| panic!("{}", diagnostics.render(&source, Colour::Never))).report;
+        assert!(diagnostics.is_empty());
+        let noted = report.lines().iter().any(|line| line.contains("that nothing uses"));
+        assert_eq!(noted, unused.starts_with("<xacro"), "{unused}: {:?}", report.lines());
+    }
+    for used in ["<xacro:arm/>", "<xacro:if value='1'/>", "<xacro:include filename='a.xacro'/>", "<link name='${prefix}two'/>"] {
+        let said = said(&with(&used.repeat(20)));
+        assert!(said.len() == 1 && said[0].0 == "xacro" && said[0].1.contains("pip install xacro"), "{used}: {said:?}");
+    }
+    let said = said(&model.replace("0 1 0", "${x} $(arg y) ${z + 1}"));
+    assert!(said.len() == 1 && said[0].0 == "xacro", "{said:?}");
+}
+
+/// Sizes of many digits, and shapes whose numbers are far apart: an arm, or a fault.
+#[test]
+fn shapes_of_difficult_sizes_are_read_in_bounded_time() {
+    let model = |geoms: &str| format!("<mujoco><worldbody><body><joint/>{geoms}</body></worldbody></mujoco>");
+    let digits = format!("0.{}", "123456789".repeat(20));
+    for kind in ["box", "ellipsoid", "capsule", "cylinder", "sphere"] {
+        for sizes in [format!("{digits} {digits} {digits}"), "1e-3 1e3 1e-3".to_owned(), "7 1e-9 3".to_owned()] {
+            check(model(&format!("<geom type='{kind}' size='{sizes}'/>")), None);
+            let ends = format!("{digits} 0 1e-3 -{digits} 3 7");
+            check(model(&format!("<geom type='{kind}' size='{sizes}' fromto='{ends}' density='{digits}'/>")), None);
+        }
+        check(model(&format!("<geom type='{kind}' size='1e-200 1e-200 1e-200'/>")), Some(Code::OutOfRange));
+        check(model(&format!("<geom type='{kind}' size='1e300 1e300 1e300' mass='1'/>")), Some(Code::OutOfRange));
+    }
+    check(model(&"<geom size='0.1'/>".repeat(1001)), Some(Code::TooLarge));
 }

@@ -292,3 +292,126 @@ fn rows_are_announced_on_the_way_as_well() {
     let urdf = imported(EVERYTHING, &options());
     assert!(!urdf.report.lines().iter().any(|line| line.starts_with("link frames are others")), "{:?}", urdf.report.lines());
 }
+
+/// URDF 1.1 and later: x, y, z, w of a quaternion in an origin, of joints and of bodies; further limits are named, not kept.
+#[test]
+fn newer_versions_of_urdf_are_read() {
+    let with = |version: &str, origin: &str, limit: &str| {
+        let text = format!(
+            "<robot name='a' version='{version}'><link name='b'/><link name='l'><visual><geometry><capsule radius='1' length='1'/></geometry></visual>\
+             <inertial><origin {origin}/><mass value='1'/><inertia ixx='0.1' iyy='0.2' izz='0.15' ixy='0' ixz='0' iyz='0'/></inertial></link>\
+             <joint name='j' type='revolute'><parent link='b'/><child link='l'/><origin xyz='0 0 1' {origin}/><axis xyz='0 1 0'/>\
+             <limit lower='-1' upper='1' velocity='1' effort='1' {limit}/></joint></robot>"
+        );
+        let Imported { yaml, report } = imported(&text, &Options::default());
+        let lines: Vec<String> = yaml.lines().filter(|line| !line.starts_with('#')).map(str::to_owned).collect();
+        (lines, report.lines().to_vec())
+    };
+    let turned = with("1.0", "rpy='0 0 1.5708'", "").0;
+    for version in ["1.1", "1.2", "1.7"] {
+        let (lines, report) =
+            with(version, "quat_xyzw='0 0 0.70710678 0.70710678'", "acceleration='5' deceleration='4' jerk='100'");
+        let plain = |lines: &[String]| {
+            lines.iter().map(|line| line.split("  #").next().unwrap_or_default().to_owned()).collect::<Vec<_>>()
+        };
+        assert_eq!(plain(&lines), plain(&turned), "{version}");
+        assert_eq!(
+            report.iter().filter(|line| line.contains("of URDF 1.7, of which 1.2 is read")).count(),
+            usize::from(version == "1.7")
+        );
+        let left_out =
+            "limits left out, for which a description has no key: `acceleration` 5, `deceleration` 4, `jerk` 100 of `j`";
+        assert!(report.iter().any(|line| line == left_out), "{report:?}");
+    }
+    // A quaternion that is no such angle keeps its digits, w first.
+    let (lines, _) = with("1.1", "quat_xyzw='1 2 3 4'", "");
+    assert_eq!(lines.iter().filter(|line| line.contains("quat: [4, 1, 2, 3]")).count(), 2, "{lines:?}");
+}
+
+/// A file without any mass becomes kinematics alone, with one warning, whatever its efforts are.
+#[test]
+fn a_file_without_masses_is_kinematics_alone() {
+    let text = "<robot name='a'><link name='b'/><link name='l'/><link name='m'/>\
+                <joint name='j' type='revolute'><parent link='b'/><child link='l'/><axis xyz='0 0 1'/><limit lower='-1' upper='1' velocity='1' effort='0'/></joint>\
+                <joint name='k' type='revolute'><parent link='l'/><child link='m'/><origin xyz='1 0 0'/><axis xyz='0 1 0'/><limit lower='-1' upper='1' velocity='1' effort='0'/></joint></robot>";
+    let (imported, diagnostics) = import(&Source::new("a.urdf", text), &Options::default());
+    assert_eq!(diagnostics.iter().map(|fault| fault.code.name()).collect::<Vec<_>>(), ["no-mass"]);
+    let Imported { yaml, report } = imported.expect("kinematics");
+    assert!(valid(&yaml).is_massless());
+    assert!(report.lines().iter().any(|line| line.contains("2 effort limits of 0")), "{:?}", report.lines());
+}
+
+/// Velocities beyond which a description is warned of are left out: no bound is computed from them.
+#[test]
+fn velocities_that_no_joint_reaches_are_left_out() {
+    let yaml = |kind: &str, velocity: &str| {
+        let text = EVERYTHING.replacen("velocity=\"2.175\"", &format!("velocity=\"{velocity}\""), 1);
+        assert_ne!(text, EVERYTHING, "{kind}");
+        imported(&text, &options()).yaml
+    };
+    for (velocity, kept) in [("60", true), ("60.1", false), ("1e2", false), ("50000", false)] {
+        let yaml = yaml("revolute", velocity);
+        assert_eq!(yaml.contains(&format!("velocity: {velocity}")), kept, "{velocity}\n{yaml}");
+        // The rule is that of the descriptions.
+        let warned = |yaml: &str| {
+            let source = Source::new("robot.yaml", yaml);
+            validate::read(&source).1.iter().any(|warning| warning.code.name() == "implausible-velocity")
+        };
+        assert!(!warned(&yaml), "{velocity}");
+        if !kept {
+            let with = yaml.replacen(
+                "limits: {position: [-2.8973, 2.8973], ",
+                &format!("limits: {{position: [-2.8973, 2.8973], velocity: {velocity}, "),
+                1,
+            );
+            assert!(with != yaml && warned(&with), "{velocity}\n{yaml}");
+        }
+    }
+}
+
+/// An arm of one joint with a finger, and a frame beside it, as a URDF and as a MuJoCo model.
+fn with_a_finger(frame: &str) -> [String; 2] {
+    let inertial = "<inertial><mass value='1'/><inertia ixx='1' iyy='1' izz='1' ixy='0' ixz='0' iyz='0'/></inertial>";
+    let limit = "<axis xyz='0 1 0'/><limit lower='-1' upper='1' velocity='1' effort='1'/>";
+    let urdf = format!(
+        "<robot name='a'><link name='b'/><link name='l'>{inertial}</link><link name='moving_jaw'>{inertial}</link><link name='{frame}'/>\
+         <joint name='j' type='revolute'><parent link='b'/><child link='l'/>{limit}</joint>\
+         <joint name='gripper' type='revolute'><parent link='l'/><child link='moving_jaw'/>{limit}</joint>\
+         <joint name='f' type='fixed'><parent link='l'/><child link='{frame}'/></joint></robot>"
+    );
+    let inertial = "<inertial mass='1' pos='0 0 0' diaginertia='1 1 1'/>";
+    let mjcf = format!(
+        "<mujoco><worldbody><body name='l'>{inertial}<joint name='j'/><site name='{frame}'/>\
+         <body name='moving_jaw'>{inertial}<joint name='gripper'/></body></body></worldbody></mujoco>"
+    );
+    [urdf, mjcf]
+}
+
+/// One rule for both formats: the suggestion, copied, gives the arm without its finger; and so does that of the warning where there is no choice.
+#[test]
+fn the_suggested_tip_leaves_fingers_out() {
+    let suggested = |help: &str| {
+        let words: Vec<&str> = help.split(['`', ' ']).collect();
+        let at = words.iter().position(|word| *word == "--tip").unwrap_or_else(|| panic!("no tip in {help}"));
+        words[at + 1].to_owned()
+    };
+    for frame in
+        ["tool0", "tcp", "hand_tcp", "flange", "ee_link", "eef", "gripper_frame_link", "gripperframe", "endEffector", "marker"]
+    {
+        for text in with_a_finger(frame) {
+            let source = Source::new("arm", text.as_str());
+            let (found, diagnostics) = import(&source, &Options::default());
+            let fault = diagnostics.iter().next().unwrap_or_else(|| panic!("{frame}: nothing is said of {text}"));
+            // A site that is no frame of a tool is no choice of a tip.
+            let code = if frame == "marker" && text.starts_with("<mujoco") { "finger-as-tip" } else { "several-tips" };
+            assert_eq!((fault.code.name(), found.is_some()), (code, code == "finger-as-tip"), "{frame}: {}", fault.message);
+            assert!(fault.help.contains("--lock gripper=0"), "{}", fault.help);
+            let tip = suggested(&fault.help);
+            assert_eq!(tip == frame, code == "several-tips", "{frame}: {}", fault.help);
+            let options = Options { tip: Some(tip), lock: vec![("gripper".into(), "0".into())], ..Options::default() };
+            let (imported, diagnostics) = import(&source, &options);
+            let yaml = imported.unwrap_or_else(|| panic!("{}", diagnostics.render(&source, Colour::Never))).yaml;
+            assert_eq!(valid(&yaml).dof(), 1, "{yaml}");
+        }
+    }
+}

@@ -7,3 +7,4 @@ mod convert;
 mod export;
 mod hostile;
 mod import;
+mod mjcf;

@@ -149,7 +149,13 @@ impl Builder<'_> {
             Led::Moving(leader) => {
                 let (name, leader) = (shown(&tree.joints[index].name), shown(&tree.joints[leader].name));
                 let span = format.leader(index).map_or(tree.joints[index].span, |(_, span)| span);
-                let help = format!("lock it where it is to stand: `--lock {name}=0`");
+                let mass = self.mass_below(index);
+                let but = if mass > 0.0 {
+                    format!("; its {mass} kg then do not move with `{leader}`, which changes torques")
+                } else {
+                    String::new()
+                };
+                let help = format!("lock it where it is to stand: `--lock {name}=0`{but}");
                 self.values.report(Code::Mimic, span, format!("the joint `{name}` follows `{leader}`, which moves"), "", help);
                 None
             }

@@ -5,64 +5,53 @@ use std::collections::BTreeMap;
 use armgen_codegen::diagnostic::{Diagnostic, Diagnostics};
 
 use super::locks::Locks;
-use crate::tree::{Link, Role, Tree};
+use super::names;
+use crate::tree::{Role, Tree};
 use crate::xml::shown;
 use crate::Code;
 
 /// So many names in a message.
 const NAMED: usize = 12;
 
+/// A link that may be the tip.
+#[derive(Clone, Copy)]
+struct Candidate {
+    link: usize,
+    /// The last joint above it that moves, and how many do.
+    last: usize,
+    joints: usize,
+}
+
 /// The only leaf with a moving joint above it, with notes; where several differ by fixed joints alone, the link of the last joint that moves.
+///
+/// A site whose name is that of a tool's frame counts as a leaf: it is to a MuJoCo model what a link without mass is to a URDF.
 pub(super) fn only(tree: &Tree, base: usize, locks: &Locks, diagnostics: &mut Diagnostics) -> Option<(usize, Vec<String>)> {
     // Leaves by the last joint above them that moves, in the order of the file.
-    let mut groups: BTreeMap<usize, Vec<usize>> = BTreeMap::new();
-    let mut count: BTreeMap<usize, usize> = BTreeMap::new();
+    let mut groups: BTreeMap<usize, Vec<Candidate>> = BTreeMap::new();
+    let mut frames: Vec<Candidate> = Vec::new();
     let mut open: Vec<(usize, Option<usize>, usize)> = vec![(base, None, 0)];
-    while let Some((link, last, moving)) = open.pop() {
-        let bodies = tree.links[link].below.iter().filter(|&&joint| tree.links[tree.joints[joint].child].role != Role::Frame);
-        let mut leaf = true;
-        for &below in bodies {
-            leaf = false;
+    while let Some((link, last, joints)) = open.pop() {
+        let frame = tree.links[link].role == Role::Frame;
+        let mut leaf = !frame;
+        for &below in &tree.links[link].below {
             let joint = &tree.joints[below];
+            leaf &= tree.links[joint.child].role == Role::Frame;
             let moves = joint.kind.moves() && locks.of(below).is_none();
-            open.push((joint.child, if moves { Some(below) } else { last }, moving + usize::from(moves)));
+            open.push((joint.child, if moves { Some(below) } else { last }, joints + usize::from(moves)));
         }
-        if let (true, Some(last)) = (leaf, last) {
-            groups.entry(last).or_default().push(link);
-            count.insert(last, moving);
+        let Some(last) = last else { continue };
+        let candidate = Candidate { link, last, joints };
+        if leaf {
+            groups.entry(last).or_default().push(candidate);
+        } else if frame && names::tool(&tree.links[link].name).is_some() {
+            frames.push(candidate);
         }
     }
-    let named = |links: &[usize]| {
-        let names: Vec<String> = links.iter().take(NAMED).map(|&link| format!("`{}`", shown(&tree.links[link].name))).collect();
-        format!("{}{}", names.join(", "), if links.len() > NAMED { ", ..." } else { "" })
-    };
+    if !groups.is_empty() {
+        frames.into_iter().for_each(|frame| groups.entry(frame.last).or_default().push(frame));
+    }
     if groups.len() > 1 {
-        // The arm is among the longest chains; leaves that fixed joints alone part are one choice.
-        let mut chains: Vec<(&[usize], usize)> = groups.iter().map(|(last, leaves)| (leaves.as_slice(), count[last])).collect();
-        chains.sort_by_key(|&(_, joints)| std::cmp::Reverse(joints));
-        let chain = |&(leaves, joints): &(&[usize], usize)| {
-            let others = match leaves.len() - 1 {
-                0 => String::new(),
-                1 => ", and 1 leaf fixed to its last link".to_owned(),
-                n => format!(", and {n} leaves fixed to its last link"),
-            };
-            format!("`{}` ({}{others})", shown(&tree.links[leaves[0]].name), number(joints))
-        };
-        let all: Vec<String> = chains.iter().take(NAMED).map(chain).collect();
-        let more = chains.len().saturating_sub(NAMED);
-        let more = if more > 0 { format!(", and {more} more") } else { String::new() };
-        let message = format!("several links may be the tip: {}{more}", all.join(", "));
-        let tips: Vec<usize> = chains.iter().map(|(leaves, _)| leaves[0]).collect();
-        let mut help = format!("choose one: `--tip {}`", shown(&tree.links[tips[0]].name));
-        if let Some((link, joints)) = before_branches(tree, base, tips[0], locks) {
-            let (tip, joints) = (shown(&link.name), number(joints));
-            help = format!("{help}; or end the arm where it branches, say before the fingers: `--tip {tip}` ({joints})");
-        }
-        let mut fault = Diagnostic::new(Code::SeveralTips, tree.links[tips[0]].span, message, "may be the tip", help);
-        for &tip in tips.iter().skip(1).take(3) {
-            fault = fault.also(tree.links[tip].span, "may be the tip, too");
-        }
-        diagnostics.push(fault);
+        diagnostics.push(several(tree, base, locks, &groups));
         return None;
     }
     let Some((&last, leaves)) = groups.iter().next() else {
@@ -71,20 +60,118 @@ pub(super) fn only(tree: &Tree, base: usize, locks: &Locks, diagnostics: &mut Di
         diagnostics.push(Diagnostic::new(Code::NoJoints, tree.links[base].span, message, "", help));
         return None;
     };
-    if let [only] = leaves[..] {
-        return Some((only, Vec::new()));
+    if is_finger(tree, last) {
+        diagnostics.push(finger(tree, base, last, locks));
+    }
+    let bodies: Vec<usize> = leaves.iter().map(|leaf| leaf.link).filter(|&link| tree.links[link].role != Role::Frame).collect();
+    if let ([only], 1) = (&bodies[..], leaves.len()) {
+        return Some((*only, Vec::new()));
     }
     let mut tip = tree.joints[last].child;
     // The frame of the body, not the one that its joint turns about.
     while let (Role::Between, Some(&below)) = (tree.links[tip].role, tree.links[tip].below.first()) {
         tip = tree.joints[below].child;
     }
+    if let [only] = bodies[..] {
+        tip = only;
+    }
+    let mut others: Vec<usize> = leaves.iter().map(|leaf| leaf.link).filter(|&link| link != tip).collect();
+    others.sort_by_key(|&link| names::tool(&tree.links[link].name).unwrap_or(usize::MAX));
+    let named: Vec<String> = others.iter().take(NAMED).map(|&link| format!("`{}`", shown(&tree.links[link].name))).collect();
     let note = format!(
-        "the end effector is the link `{}`; frames that are fixed to it may be instead, by `--tip`: {}",
+        "the end effector is the link `{}`; frames that are fixed to it may be instead, by `--tip`: {}{}",
         shown(&tree.links[tip].name),
-        named(leaves)
+        named.join(", "),
+        if others.len() > NAMED { ", ..." } else { "" }
     );
     Some((tip, vec![note]))
+}
+
+/// The refusal of a file with several links that may be the tip, and the best of them: the frame of a tool; else the link before the fingers;
+/// else the longest chain.
+fn several(tree: &Tree, base: usize, locks: &Locks, groups: &BTreeMap<usize, Vec<Candidate>>) -> Diagnostic {
+    // The arm is among the longest chains; leaves that fixed joints alone part are one choice.
+    let best = |leaves: &[Candidate]| {
+        let rank = |leaf: &&Candidate| names::tool(&tree.links[leaf.link].name).unwrap_or(usize::MAX);
+        *leaves.iter().min_by_key(rank).expect("a group has a leaf")
+    };
+    let mut chains: Vec<(Candidate, usize)> = groups.values().map(|leaves| (best(leaves), leaves.len())).collect();
+    chains.sort_by_key(|(chain, _)| std::cmp::Reverse(chain.joints));
+    let tools = chains.iter().map(|(chain, _)| *chain).filter(|chain| !is_finger(tree, chain.last));
+    let tool = tools.filter_map(|chain| Some((names::tool(&tree.links[chain.link].name)?, chain))).min_by_key(|(rank, _)| *rank);
+    let fingers: Vec<&str> = chains
+        .iter()
+        .filter(|(chain, _)| is_finger(tree, chain.last))
+        .map(|(chain, _)| tree.joints[chain.last].name.as_str())
+        .collect();
+    let longest = chains[0].0;
+    let branch = before_branches(tree, base, longest.link, locks);
+    let other = chains.iter().map(|(chain, _)| *chain).find(|chain| !is_finger(tree, chain.last));
+    let (first, joints) = match (tool, branch, other) {
+        (Some((_, chain)), ..) => (chain.link, chain.joints),
+        (None, Some(before), _) if is_finger(tree, longest.last) => before,
+        (None, None, Some(chain)) => (chain.link, chain.joints),
+        _ => (longest.link, longest.joints),
+    };
+    // The one that is suggested is listed first.
+    if let Some(at) = chains.iter().position(|(chain, _)| chain.link == first) {
+        let chain = chains.remove(at);
+        chains.insert(0, chain);
+    }
+    let chain = |&(chain, leaves): &(Candidate, usize)| {
+        let others = match leaves - 1 {
+            0 => String::new(),
+            1 => ", and 1 leaf fixed to its last link".to_owned(),
+            n => format!(", and {n} leaves fixed to its last link"),
+        };
+        format!("`{}` ({}{others})", shown(&tree.links[chain.link].name), number(chain.joints))
+    };
+    let all: Vec<String> = chains.iter().take(NAMED).map(chain).collect();
+    let more = chains.len().saturating_sub(NAMED);
+    let more = if more > 0 { format!(", and {more} more") } else { String::new() };
+    let message = format!("several links may be the tip: {}{more}", all.join(", "));
+    let mut help = format!("choose one: `--tip {}` ({})", shown(&tree.links[first].name), number(joints));
+    if !fingers.is_empty() && first != longest.link {
+        let locks: Vec<String> = fingers.iter().take(NAMED).map(|name| format!("`--lock {}=0`", shown(name))).collect();
+        help = format!("{help}; what moves beside it stands at 0, or where you say: {}", locks.join(" "));
+    }
+    if let Some((link, joints)) = branch.filter(|&(link, _)| link != first) {
+        let (tip, joints) = (shown(&tree.links[link].name), number(joints));
+        help = format!("{help}; or end the arm where it branches, say before the fingers: `--tip {tip}` ({joints})");
+    }
+    let mut fault = Diagnostic::new(Code::SeveralTips, tree.links[first].span, message, "may be the tip", help);
+    for (chain, _) in chains.iter().filter(|(chain, _)| chain.link != first).take(3) {
+        fault = fault.also(tree.links[chain.link].span, "may be the tip, too");
+    }
+    fault
+}
+
+/// Whether a joint moves a finger, by its name or that of its link.
+fn is_finger(tree: &Tree, joint: usize) -> bool {
+    let joint = &tree.joints[joint];
+    names::finger(&joint.name, &tree.links[joint.child].name)
+}
+
+/// The warning that the last joint of an arm moves a finger, with the options that leave it out.
+fn finger(tree: &Tree, base: usize, last: usize, locks: &Locks) -> Diagnostic {
+    let moves = |joint: usize| tree.joints[joint].kind.moves() && locks.of(joint).is_none();
+    let joint = &tree.joints[last];
+    let name = shown(&joint.name);
+    let message = format!("the last joint, `{name}`, seems to move a finger: the arm ends there, and inverse kinematics use it");
+    let mut tip = joint.parent;
+    while let (Role::Between, Some(above)) = (tree.links[tip].role, tree.links[tip].above) {
+        tip = tree.joints[above].parent;
+    }
+    let before = tree.path(base, tip).map_or(0, |path| path.into_iter().filter(|&joint| moves(joint)).count());
+    let help = match before {
+        0 => "keep it if that is meant".to_owned(),
+        joints => format!(
+            "`--tip {} --lock {name}=0` leaves it out ({}); keep it if that is meant",
+            shown(&tree.links[tip].name),
+            number(joints)
+        ),
+    };
+    Diagnostic::new(Code::FingerAsTip, joint.span, message, "a finger?", help)
 }
 
 /// `1 joint`, `2 joints`.
@@ -93,7 +180,7 @@ fn number(joints: usize) -> String {
 }
 
 /// The last link above a tip on which more than one joint moves something, and how many joints move it, if some do.
-fn before_branches<'t>(tree: &'t Tree, base: usize, tip: usize, locks: &Locks) -> Option<(&'t Link, usize)> {
+fn before_branches(tree: &Tree, base: usize, tip: usize, locks: &Locks) -> Option<(usize, usize)> {
     let moves = |joint: usize| tree.joints[joint].kind.moves() && locks.of(joint).is_none();
     // Whether a joint, or one below it, moves.
     let moving = |joint: usize| {
@@ -110,8 +197,8 @@ fn before_branches<'t>(tree: &'t Tree, base: usize, tip: usize, locks: &Locks) -
     let at =
         path.iter().rposition(|&joint| tree.links[tree.joints[joint].parent].below.iter().filter(|&&j| moving(j)).count() > 1)?;
     let joints = path[..at].iter().filter(|&&joint| moves(joint)).count();
-    let link = &tree.links[tree.joints[path[at]].parent];
-    (joints > 0 && link.role != Role::Between).then_some((link, joints))
+    let link = tree.joints[path[at]].parent;
+    (joints > 0 && tree.links[link].role != Role::Between).then_some((link, joints))
 }
 
 /// The links above one, as a list for a message, if there are some.

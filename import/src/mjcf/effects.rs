@@ -35,8 +35,6 @@ pub(super) fn refuse_changed_inertias(compiler: Node<'_, '_>, diagnostics: &mut 
     let positive = |text: &str| text.trim().parse::<f64>().is_ok_and(|value| value > 0.0);
     for (name, is_set) in [
         ("coordinate", attribute(compiler, "coordinate").is_some_and(|(word, _)| word == "global")),
-        ("inertiafromgeom", attribute(compiler, "inertiafromgeom").is_some_and(|(word, _)| word == "true")),
-        ("balanceinertia", attribute(compiler, "balanceinertia").is_some_and(|(word, _)| word == "true")),
         ("boundmass", attribute(compiler, "boundmass").is_some_and(|(word, _)| positive(word))),
         ("boundinertia", attribute(compiler, "boundinertia").is_some_and(|(word, _)| positive(word))),
         ("settotalmass", attribute(compiler, "settotalmass").is_some_and(|(word, _)| positive(word))),
@@ -48,9 +46,69 @@ pub(super) fn refuse_changed_inertias(compiler: Node<'_, '_>, diagnostics: &mut 
     }
 }
 
+/// Forces that `flag` switches off.
+#[derive(Clone, Copy, Default)]
+pub(super) struct Disabled {
+    pub(super) gravity: bool,
+    pub(super) spring: bool,
+    pub(super) damper: bool,
+    pub(super) friction: bool,
+    pub(super) equality: bool,
+}
+
+/// What the flags of a model switch off; of several the last one holds. Constraints are friction losses and equalities, too.
+pub(super) fn disabled(root: Node<'_, '_>, diagnostics: &mut Diagnostics) -> Disabled {
+    let mut off: BTreeMap<&str, bool> = BTreeMap::new();
+    let flags = sections(root, "option").flat_map(|option| option.children()).filter(|node| node.has_tag_name("flag"));
+    for attribute in flags.flat_map(|flag| flag.attributes()).filter(|attribute| attribute.namespace().is_none()) {
+        match attribute.value() {
+            "disable" => _ = off.insert(attribute.name(), true),
+            "enable" => _ = off.insert(attribute.name(), false),
+            word => {
+                let range = attribute.range_value();
+                let message = format!("the flag `{}` is `{}`", shown(attribute.name()), shown(word));
+                refuse(Span::new(range.start, range.end), message, "write `enable` or `disable`", diagnostics);
+            }
+        }
+    }
+    let is_off = |names: &[&str]| names.iter().any(|name| off.get(name) == Some(&true));
+    Disabled {
+        gravity: is_off(&["gravity"]),
+        // Versions before 3.3.6 have one flag for springs and dampers.
+        spring: is_off(&["spring", "passive"]),
+        damper: is_off(&["damper", "passive"]),
+        friction: is_off(&["frictionloss", "constraint"]),
+        equality: is_off(&["equality", "constraint"]),
+    }
+}
+
+/// A line for each force of joints that the file gives and its flags switch off.
+pub(super) fn switched_off<'a, 'i>(mjcf: &Mjcf<'a, 'i>, joints: &[(&str, Element<'a, 'i>)]) -> Vec<String> {
+    let off = mjcf.disabled;
+    let all: [(bool, &str, &[&str]); 3] = [
+        (off.spring, "springs", &["stiffness", "springdamper"]),
+        (off.damper, "damping", &["damping", "springdamper"]),
+        (off.friction, "friction losses", &["frictionloss"]),
+    ];
+    let line = |(_, what, names): (bool, &str, &[&str])| {
+        let of = |&(joint, element): &(&str, Element<'a, 'i>)| {
+            let given = names.iter().filter(|name| mjcf.is_given(element, name));
+            let values = given.filter_map(|name| Some(format!("`{name}` {}", shown(mjcf.classes.attribute(element, name)?.0))));
+            let values: Vec<String> = values.collect();
+            (!values.is_empty()).then(|| format!("{} of `{}`", values.join(", "), shown(joint)))
+        };
+        let joints: Vec<String> = joints.iter().filter_map(of).collect();
+        (!joints.is_empty()).then(|| format!("`flag` switches {what} off, which are left out: {}", joints.join(", ")))
+    };
+    all.into_iter().filter(|(off, ..)| *off).filter_map(line).collect()
+}
+
 /// Springs and damping that are not linear.
 pub(super) fn refuse_springs<'a, 'i>(mjcf: &Mjcf<'a, 'i>, joint: Element<'a, 'i>, values: &mut Values<'_>) {
     for name in ["stiffness", "springdamper"] {
+        if mjcf.disabled.spring && (name == "stiffness" || mjcf.disabled.damper) {
+            continue;
+        }
         let Some((text, span)) = mjcf.classes.attribute(joint, name) else { continue };
         let numbers = values.words(text, span, name);
         // One stiffness is the description's.
@@ -63,9 +121,8 @@ pub(super) fn refuse_springs<'a, 'i>(mjcf: &Mjcf<'a, 'i>, joint: Element<'a, 'i>
             values.report(Code::MjcfFeature, span, message, "a spring", help);
         }
     }
-    if let Some((text, span)) =
-        mjcf.classes.attribute(joint, "damping").filter(|(text, _)| text.split_ascii_whitespace().count() > 1)
-    {
+    let damping = mjcf.classes.attribute(joint, "damping").filter(|_| !mjcf.disabled.damper);
+    if let Some((text, span)) = damping.filter(|(text, _)| text.split_ascii_whitespace().count() > 1) {
         let message = format!("the damping of a joint of the chain is `{}`, a polynomial of its rate", shown(text));
         values.report(Code::MjcfFeature, span, message, "", "give one number: the torque is that times the rate");
     }
@@ -89,7 +146,8 @@ pub(super) fn check(mjcf: &Mjcf<'_, '_>, extent: &Extent<'_>, diagnostics: &mut 
     let moves = |name: &str| extent.tree.joint(name).is_some_and(|joint| extent.moving.contains(&joint));
     let carrier = |link: Option<usize>| link.and_then(|link| extent.carriers.get(&link).copied());
     let is_on = |node: Node<'_, '_>| node.attribute("active") != Some("false");
-    for equality in sections(root, "equality").flat_map(|n| n.children()).filter(|n| n.is_element() && is_on(*n)) {
+    let equalities = sections(root, "equality").filter(|_| !mjcf.disabled.equality).flat_map(|n| n.children());
+    for equality in equalities.filter(|n| n.is_element() && is_on(*n)) {
         let body = |name: &str| carrier(equality.attribute(name).and_then(|name| extent.tree.link(name)));
         let site = |name: &str| carrier(equality.attribute(name).and_then(|name| mjcf.sites.get(name).copied()));
         let joints = ["joint1", "joint2"].into_iter().filter_map(|name| equality.attribute(name)).any(moves);

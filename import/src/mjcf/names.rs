@@ -84,7 +84,7 @@ const ELEMENTS_OF: [(&str, &[&str]); 5] = [
 ];
 
 #[rustfmt::skip]
-const ATTRIBUTES_OF: [(&str, &[&str]); 9] = [
+const ATTRIBUTES_OF: [(&str, &[&str]); 10] = [
     ("compiler", &[
         "autolimits", "boundmass", "boundinertia", "settotalmass", "balanceinertia", "strippath", "coordinate", "angle", "fitaabb", "eulerseq",
         "meshdir", "texturedir", "discardvisual", "usethread", "fusestatic", "inertiafromgeom", "inertiagrouprange", "saveinertial", "assetdir",
@@ -95,6 +95,11 @@ const ATTRIBUTES_OF: [(&str, &[&str]); 9] = [
         "sleep_tolerance", "gravity", "wind", "magnetic", "density", "viscosity", "o_margin", "o_solref", "o_solimp", "o_friction",
         "integrator", "collision", "cone", "jacobian", "solver", "iterations", "ls_iterations", "noslip_iterations", "ccd_iterations",
         "mpr_iterations", "sdf_iterations", "sdf_initpoints", "actuatorgroupdisable",
+    ]),
+    ("flag", &[
+        "constraint", "equality", "frictionloss", "limit", "contact", "passive", "spring", "damper", "gravity", "clampctrl", "warmstart",
+        "filterparent", "actuation", "refsafe", "sensor", "midphase", "nativeccd", "island", "eulerdamp", "autoreset", "override", "energy",
+        "fwdinv", "invdiscrete", "multiccd", "sleep", "sensornoise",
     ]),
     ("default", &["class"]),
     ("body", &[
@@ -128,5 +133,5 @@ pub(super) fn warn_of_unread<'a, 'i: 'a>(root: Node<'a, 'i>, diagnostics: &mut D
     let inside = inside.iter().copied();
     unread::warn_of_elements(std::iter::once(root).chain(inside.clone()), &ELEMENTS_OF, diagnostics);
     unread::warn_of_repeated(inside.clone(), &SINGLE, diagnostics);
-    unread::warn_of_attributes(inside, &ATTRIBUTES_OF, &[], diagnostics);
+    unread::warn_of_attributes(inside, &ATTRIBUTES_OF, diagnostics);
 }

@@ -25,7 +25,7 @@ impl<'a, 'i> Mjcf<'a, 'i> {
         }
         let what = format!("`{name}` of {what}");
         let found = match name {
-            "quat" => values.list::<4>(text, span, name, &what).and_then(|quat| quaternion(&quat, span, &what, values)),
+            "quat" => values.list::<4>(text, span, name, &what).and_then(|quat| values.quaternion(&quat, span, &what)),
             "axisangle" => values.list::<4>(text, span, name, &what).and_then(|[x, y, z, angle]| {
                 let (axis, axis_offset) = values.direction(&[x, y, z], span, &what)?;
                 let angle = self.angle(&angle, values);
@@ -87,15 +87,6 @@ impl<'a, 'i> Mjcf<'a, 'i> {
     }
 }
 
-fn quaternion(quat: &[Decimal; 4], span: Span, what: &str, values: &mut Values<'_>) -> Option<Turn> {
-    if quat.iter().all(Decimal::is_zero) {
-        let help = "`1 0 0 0` is no rotation at all";
-        values.report(Code::ZeroAxis, span, format!("{what} is 0, which is no rotation"), "all four are 0", help);
-        return None;
-    }
-    Some(values.snap.quaternion(quat, span))
-}
-
 /// A rotation about an axis; about x, y or z as an angle about that.
 fn about(axis: [Written; 3], axis_offset: f64, angle: Written) -> Turn {
     let given: Vec<usize> = (0..3).filter(|&k| !axis[k].is_zero()).collect();
@@ -116,7 +107,7 @@ fn about(axis: [Written; 3], axis_offset: f64, angle: Written) -> Turn {
 }
 
 /// The smallest rotation that takes z to a direction: about z × v, by the quaternion (|v| + v_z, -v_y, v_x, 0).
-fn z_axis(v: [Written; 3], offset: f64, span: Span) -> Turn {
+pub(super) fn z_axis(v: [Written; 3], offset: f64, span: Span) -> Turn {
     let given: Vec<usize> = (0..3).filter(|&k| !v[k].is_zero()).collect();
     let right = |twelfths: i64| Written {
         text: multiple_of_pi(twelfths),
