@@ -1,4 +1,5 @@
 use super::*;
+use crate::exact::Rational;
 
 fn pool() -> Pool {
     Pool::new(Field::for_constants([]))
