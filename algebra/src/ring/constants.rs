@@ -145,7 +145,8 @@ impl Pool {
 
     /// A constant that has this value and may look different, because not all is multiplied out in one of them.
     fn equal_constant(&self, value: &Number, element: Element) -> Option<ExprId> {
-        if element == self.field.zero() && value.is_near(&Number::zero()) {
+        // The first constant of a pool is 0 itself.
+        if element == self.field.zero() && !self.nodes.is_empty() && value.is_near(&Number::zero()) {
             return Some(ExprId::ZERO);
         }
         let expr = self.known([element; 2])?;
