@@ -50,7 +50,9 @@ impl<'a> Parser<'a> {
             if want.kind == Kind::End {
                 return Ok(());
             }
+            // Within an item its documentation stands where it should, in whatever words.
             if want.kind == Kind::Documentation {
+                self.documentation()?;
                 continue;
             }
             let mut found = self.token;
