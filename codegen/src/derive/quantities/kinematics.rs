@@ -5,9 +5,6 @@
 //! J_Pi = z_i × (p_e - p_i), J_Oi = z_i (revolute);   J_Pi = z_i, J_Oi = 0 (prismatic)   (the book, eq. 3.30)
 //! dz_i/dt = omega_i × z_i,   d(p_e - p_i)/dt = v_e - v_i
 //! ```
-//!
-//! Lever arms p_e - p_i are added up from the end effector, offset by offset. As differences of positions in the base frame they would hold the
-//! slides before joint i, which cancel: digits would be lost where the slide is long.
 
 use crate::derive::arm::Arm;
 use crate::derive::passes::RewriteScope;
@@ -169,44 +166,6 @@ pub fn frames(pool: &mut Pool, arm: &Arm) -> Frames {
     Frames { joints }
 }
 
-/// Orientations of joint frames in the base frame, and how each origin lies from that of the frame before.
-struct Chain {
-    orientations: Vec<Matrix>,
-    offsets: Vec<Vector>,
-}
-
-impl Chain {
-    fn new(pool: &mut Pool, arm: &Arm) -> Chain {
-        let mut orientations: Vec<Matrix> = Vec::with_capacity(arm.dof());
-        let mut offsets = Vec::with_capacity(arm.dof());
-        for joint in &arm.joints {
-            let outer = joint.parent.map_or(IDENTITY, |p| orientations[p]);
-            let rotation = joint.rotation(pool);
-            offsets.push(pool.transform(&outer, &joint.origin));
-            orientations.push(pool.product(&outer, &rotation));
-        }
-        Chain { orientations, offsets }
-    }
-
-    /// The axis of a joint.
-    fn axis(&self, i: usize) -> Vector {
-        self.orientations[i].map(|row| row[2])
-    }
-
-    /// For each link on the path from the tip to the base, the tip first: how a point fixed in the tip lies from its origin.
-    fn lever_arms(&self, pool: &mut Pool, arm: &Arm, tip: usize, point: &Vector) -> Vec<(usize, Vector)> {
-        let mut lever_arm = pool.transform(&self.orientations[tip], point);
-        let mut all = vec![(tip, lever_arm)];
-        let mut link = tip;
-        while let Some(parent) = arm.joints[link].parent {
-            lever_arm = pool.add_vectors(&self.offsets[link], &lever_arm);
-            all.push((parent, lever_arm));
-            link = parent;
-        }
-        all
-    }
-}
-
 /// A frame fixed in joint frame i, in the base frame.
 fn fixed_in(pool: &mut Pool, frame: &(Matrix, Vector), rotation: &Matrix, origin: &Vector) -> (Matrix, Vector) {
     let shift = pool.transform(&frame.0, origin);
@@ -236,19 +195,26 @@ pub fn link_frames(pool: &mut Pool, arm: &Arm) -> Vec<Vec<Vec<ExprId>>> {
         .collect()
 }
 
+fn z(frame: &(Matrix, Vector)) -> Vector {
+    [0, 1, 2].map(|row| frame.0[row][2])
+}
+
 /// J(q): six rows, linear then angular.
 pub fn geometric_jacobian(pool: &mut Pool, arm: &Arm) -> Vec<Vec<ExprId>> {
-    let chain = Chain::new(pool, arm);
-    jacobian_of_point(pool, arm, &chain, arm.tip, &arm.tool_origin)
+    let frames = frames(pool, arm);
+    jacobian_of_point(pool, arm, &frames, arm.tip, &arm.tool_origin)
 }
 
 /// The geometric Jacobian of a point fixed in joint frame `link`: six rows, linear then angular.
-fn jacobian_of_point(pool: &mut Pool, arm: &Arm, chain: &Chain, link: usize, point: &Vector) -> Vec<Vec<ExprId>> {
+fn jacobian_of_point(pool: &mut Pool, arm: &Arm, frames: &Frames, link: usize, point: &Vector) -> Vec<Vec<ExprId>> {
+    let shift = pool.transform(&frames.joints[link].0, point);
+    let end = pool.add_vectors(&frames.joints[link].1, &shift);
     let mut jacobian = vec![vec![ExprId::ZERO; arm.dof()]; 6];
-    for (i, lever_arm) in chain.lever_arms(pool, arm, link, point).into_iter().rev() {
-        let axis = chain.axis(i);
+    for i in arm.path_to(link) {
+        let axis = z(&frames.joints[i]);
         if arm.joints[i].is_revolute() {
-            let linear = pool.cross(&axis, &lever_arm);
+            let arm_to_end = pool.sub_vectors(&end, &frames.joints[i].1);
+            let linear = pool.cross(&axis, &arm_to_end);
             set_column(&mut jacobian, i, &linear, &axis);
         } else {
             set_column(&mut jacobian, i, &axis, &ZERO);
@@ -259,9 +225,9 @@ fn jacobian_of_point(pool: &mut Pool, arm: &Arm, chain: &Chain, link: usize, poi
 
 /// J_i(q) of the origin of every link frame: six rows each, linear then angular.
 pub fn link_jacobians(pool: &mut Pool, arm: &Arm) -> Vec<Vec<Vec<ExprId>>> {
-    let chain = Chain::new(pool, arm);
+    let frames = frames(pool, arm);
     let links = arm.joints.iter().enumerate();
-    links.map(|(i, joint)| jacobian_of_point(pool, arm, &chain, i, &joint.link_origin)).collect()
+    links.map(|(i, joint)| jacobian_of_point(pool, arm, &frames, i, &joint.link_origin)).collect()
 }
 
 fn set_column(jacobian: &mut [Vec<ExprId>], column: usize, linear: &Vector, angular: &Vector) {
@@ -273,36 +239,40 @@ fn set_column(jacobian: &mut [Vec<ExprId>], column: usize, linear: &Vector, angu
 
 /// dJ/dt(q, dq): six rows, linear then angular.
 pub fn geometric_jacobian_dot(pool: &mut Pool, arm: &Arm) -> Vec<Vec<ExprId>> {
-    let chain = Chain::new(pool, arm);
+    let frames = frames(pool, arm);
     let rates = arm.symbols(pool, Symbol::Rate);
-    let lever_arms = chain.lever_arms(pool, arm, arm.tip, &arm.tool_origin);
+    let path = arm.path_to(arm.tip);
+    let shift = pool.transform(&frames.joints[arm.tip].0, &arm.tool_origin);
+    let end = pool.add_vectors(&frames.joints[arm.tip].1, &shift);
     // Angular velocity of each link on the path and rate of each axis, from the base; linear velocity of the end effector relative to each joint's
     // origin, from the tip down.
     let (mut omega, mut axis_rates) = (vec![ZERO; arm.dof()], vec![ZERO; arm.dof()]);
     let mut before = ZERO;
-    for &(i, _) in lever_arms.iter().rev() {
+    for &i in &path {
         // The axis stands still on the link before it, too, of which the joint's own rate is no part.
-        axis_rates[i] = pool.cross(&before, &chain.axis(i));
-        let spin = if arm.joints[i].is_revolute() { pool.scale(rates[i], &chain.axis(i)) } else { ZERO };
+        axis_rates[i] = pool.cross(&before, &z(&frames.joints[i]));
+        let spin = if arm.joints[i].is_revolute() { pool.scale(rates[i], &z(&frames.joints[i])) } else { ZERO };
         omega[i] = pool.add_vectors(&before, &spin);
         before = omega[i];
     }
     let mut jacobian = vec![vec![ExprId::ZERO; arm.dof()]; 6];
     let mut outer: Option<usize> = None;
     let mut velocity = ZERO;
-    for (i, lever_arm) in lever_arms {
+    for &i in path.iter().rev() {
         // v_e - v_i grows by what link i carries: omega_i × (to the next origin), and the next joint's slide.
-        let reach = outer.map_or(lever_arm, |k| chain.offsets[k]);
+        let next = outer.map_or(end, |k| frames.joints[k].1);
+        let reach = pool.sub_vectors(&next, &frames.joints[i].1);
         let carried = pool.cross(&omega[i], &reach);
         velocity = pool.add_vectors(&velocity, &carried);
         if let Some(k) = outer.filter(|&k| !arm.joints[k].is_revolute()) {
-            let slide = pool.scale(rates[k], &chain.axis(k));
+            let slide = pool.scale(rates[k], &z(&frames.joints[k]));
             velocity = pool.add_vectors(&velocity, &slide);
         }
-        let axis = chain.axis(i);
+        let axis = z(&frames.joints[i]);
         let axis_rate = axis_rates[i];
         if arm.joints[i].is_revolute() {
-            let (turning, moving) = (pool.cross(&axis_rate, &lever_arm), pool.cross(&axis, &velocity));
+            let to_end = pool.sub_vectors(&end, &frames.joints[i].1);
+            let (turning, moving) = (pool.cross(&axis_rate, &to_end), pool.cross(&axis, &velocity));
             let linear = pool.add_vectors(&turning, &moving);
             set_column(&mut jacobian, i, &linear, &axis_rate);
         } else {
