@@ -109,7 +109,6 @@ fn function(model: &Model, quantity: &'static Quantity, with_parameters: bool, o
                 Some((pool, entries)) => Derivation { pool, entries, ..derivation },
                 None => derivation,
             };
-            let derivation = derivation.without_cancelled();
             lower(model, quantity, with_parameters, &derivation)
         })
         .min_by_key(|function| Cost::of(function).weight())

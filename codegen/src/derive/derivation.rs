@@ -38,19 +38,6 @@ impl Derivation {
         self.pool.all_normal_forms(&self.entries, CLOSED_FORM_TERMS)
     }
 
-    /// The same in which no entry takes to a high degree what it does not depend on, and none what no entry depends on.
-    pub fn without_cancelled(self) -> Derivation {
-        let (all, torques) = self.pool.with_gravity(&self.entries);
-        let joints = u16::try_from(self.parallel.len()).expect("few joints");
-        match self.pool.without_cancelled(&all, joints) {
-            Some((mut pool, mut entries)) => {
-                pool.take_gravity(&mut entries, &torques);
-                Derivation { pool, entries, ..self }
-            }
-            None => self,
-        }
-    }
-
     /// The derivations from the closed form, if there is one: one for each order in which its products can be formed, and the same in
     /// the rates of links with parallel axes about these.
     pub fn by_closed_form(&self) -> Vec<Derivation> {
