@@ -45,7 +45,7 @@ fn a_dozen_arms_are_verified() {
 }
 
 #[test]
-#[ignore = "wide: minutes"]
+#[ignore = "wide"]
 fn two_hundred_arms_are_verified() {
     let faults = faults(100..=299, (2, 6));
     assert!(faults.is_empty(), "{} of 200\n{}", faults.len(), faults.join("\n"));
