@@ -12,7 +12,7 @@ use std::sync::{Mutex, PoisonError};
 use dashu_base::{BitTest, DivEuclid, Signed, SquareRoot};
 use dashu_int::{IBig, UBig};
 
-use super::{Atom, Number, Rational, Shared};
+use super::{Atom, Number, Rational};
 
 /// Numbers of bits to try in turn; the last is beyond what any written number needs to be told apart.
 pub(super) const PRECISIONS: [usize; 5] = [96, 160, 320, 1280, 5120];
@@ -31,11 +31,6 @@ type Interval = (IBig, IBig);
 pub(super) struct Known(Mutex<Vec<(usize, Interval)>>);
 
 impl Known {
-    /// Whether the enclosure to so many places is there.
-    fn has(&self, places: usize) -> bool {
-        self.0.lock().unwrap_or_else(PoisonError::into_inner).iter().any(|(of, _)| *of == places)
-    }
-
     /// The enclosure to so many places, found by `enclose` if it is not there.
     fn at(&self, places: usize, enclose: impl FnOnce() -> Interval) -> Interval {
         let list = || self.0.lock().unwrap_or_else(PoisonError::into_inner);
@@ -79,14 +74,7 @@ impl Enclosures {
     fn within(&mut self, lost: usize, number: &Number) -> Interval {
         let mut guard = 0;
         loop {
-            let places = self.places + guard;
-            let (low, high) = self.to(places, |all| {
-                // Those inside others first: however deep they are, nothing is called deeper.
-                for atom in number.shared_inside(&|atom| shared_by(atom).is_some_and(|shared| shared.own.has(places))) {
-                    all.atom(&atom);
-                }
-                all.sum(number)
-            });
+            let (low, high) = self.to(self.places + guard, |all| all.sum(number));
             let width = (&high - &low).bit_len();
             if width <= guard + lost {
                 return (floor_shift(low, guard), ceil_shift(high, guard));
@@ -129,9 +117,8 @@ impl Enclosures {
                 self.roots.entry(n.clone()).or_insert_with(root).clone()
             }
             Atom::RootOf(n) => n.own.at(places, || {
-                // How wide that of a small number comes out, only the number that it is a factor of can judge.
-                let (low, high) = self.number(n);
-                let floor = |n: IBig| IBig::from((UBig::try_from(n).unwrap_or(UBig::ZERO) << places).sqrt());
+                let (low, high) = Enclosures::new(2 * places).number(n);
+                let floor = |n: IBig| IBig::from(UBig::try_from(n).unwrap_or(UBig::ZERO).sqrt());
                 (floor(low), floor(high) + IBig::ONE)
             }),
             Atom::Pi => self.pi.get_or_insert_with(|| pi(places)).clone(),
@@ -163,15 +150,6 @@ impl Enclosures {
         } else {
             enclose(&mut Enclosures::new(places))
         }
-    }
-}
-
-/// The number whose own enclosures are those of an atom.
-fn shared_by(atom: &Atom) -> Option<&Shared> {
-    match atom {
-        Atom::RootOf(of) | Atom::Inverse(of) => Some(of),
-        Atom::Sum(sum) => Some(sum.terms()),
-        _ => None,
     }
 }
 

@@ -82,7 +82,7 @@ fn checked(file: &Path, doubts: &Doubts, full: bool) -> Result<(String, u8), u8>
 
 /// What is left to the reader.
 const ADVICE: &str =
-    "  A valid file may still be wrong: compare the posture at q = 0 with a drawing, or with the arm itself by `armgen page`.\n";
+    "  A valid file may still be wrong: compare the posture at q = 0 with a drawing,\n  or with the arm itself by `armgen page`.\n";
 
 /// What the short summary leaves out.
 const MORE: &str = "  `--full` adds limits, drives, inertias as boxes, frames, and what a motion can identify.\n";
