@@ -83,7 +83,7 @@ const SLIPS: [Slip; 68] = [
     ("an inertia without its square", "yy: 0.21", "yy: 0.21 kg m", &["torque", "inertia", "`0.21`"]),
     ("a unit that is none", "d: 0.32", "d: 5kg/m", &["leave the unit out"]),
     ("an infinite friction", "friction: {viscous: 0.4, coulomb: 1.5}", "friction: inf", &["`friction: {viscous: 0.2}`"]),
-    ("a decimal comma", "a: 0.36", "a: 0,36", &["decimal point"]),
+    ("a decimal comma", "a: 0.36", "a: 0,36", &["a decimal has a point", "0.36"]),
     ("a time with ms", "d: 0.32", "d: 1 ms", &["0.001"]),
     ("a minus sign of typography", "[-0.15, 0, 0.02]", "[−0.15, 0, 0.02]", &["minus"]),
     ("angles in degrees", "alpha: pi/2", "alpha: 90", &["deg(90)"]),
