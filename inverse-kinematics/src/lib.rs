@@ -22,7 +22,7 @@
 //! | three parallel axes | a, the three, b, c; normal form of the two links between the three | `three_parallel(links)` | 8 |
 //! | all revolute axes parallel | three joints, then a revolute one | `parallel_turns(links, kinds, case of block 6)` | 2 |
 //! | three prismatic joints | any; rotations between the revolute ones about x | `three_prismatic(links, revolute places)` | 2 |
-//! | two prismatic joints | first joint revolute, the pose in the link before or behind it up to the next revolute joint; rotations between the other three about x | `two_slides(links, prismatic places, length)` | 8 |
+//! | two prismatic joints | first joint revolute, the pose in the link before or behind it up to the next revolute joint; rotations between the other three about x | `two_slides(links, place of the pose, prismatic places, length)` | 8 |
 //! | general, at most one prismatic joint | joints 3 and 6 revolute; two arrangements in which the determinant neither vanishes nor has double roots at all poses | `general_arm(arrangements, t, length)` | 16 |
 //! | position of three joints alone | - | the case of block 6 | 4 |
 //!

@@ -229,8 +229,9 @@ in_both_scalars! {
             let turning: Vec<usize> = (1..6).filter(|i| !prismatic[*i]).collect();
             for open in [0, 5] {
                 let first = turning[0] > 1 && open == 0;
-                let make = |r: &mut Random| (about_x(&turning, r), if first || turning[0] == 1 { open } else { 5 });
-                let tally = tally(50 + seed as u64, prismatic, make, |l| two_slides(l, slides, 0.5));
+                let place = if first || turning[0] == 1 { open } else { 5 };
+                let make = |r: &mut Random| (about_x(&turning, r), place);
+                let tally = tally(50 + seed as u64, prismatic, make, |l| two_slides(l, place, slides, 0.5));
                 assert_eq!((tally.lost, tally.odd), (0, 0));
                 assert!(tally.most >= 4 && tally.most <= 8);
                 assert!(tally.worst < if SINGLE { 1e-3 } else { 1e-12 });

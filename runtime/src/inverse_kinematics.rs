@@ -77,6 +77,10 @@ messages! { BranchEnd,
     BranchEnd::TooManyPoses => "the branch comes near others too often to be followed";
 }
 
+/// Beyond a limit by at most this times the root of the scalar's epsilon, rad or m, a joint variable has been moved there by rounding: 7e-10 in
+/// double precision. It is put at the limit.
+const LIMIT_ERROR: f64 = 0.05;
+
 /// A posture that continues another is at least so many times nearer than the others.
 const APART: f64 = 4.0;
 
@@ -243,12 +247,15 @@ impl<R> Branches<'_, R> {
                 return Err(BranchEnd::Jump);
             }
         }
-        for (joint, ([low, high], x)) in self.ranges.position_limits().iter().zip(there.iter()).enumerate() {
-            if !(*low <= *x && *x <= *high) {
+        let mut within = there;
+        let slack = T::default_epsilon().sqrt() * lit(LIMIT_ERROR);
+        for (joint, ([low, high], x)) in self.ranges.position_limits().iter().zip(within.iter_mut()).enumerate() {
+            if !(*low - slack <= *x && *x <= *high + slack) {
                 return Err(BranchEnd::Limit { joint });
             }
+            *x = x.max(*low).min(*high);
         }
-        Ok((there, posture.branch))
+        Ok((within, posture.branch))
     }
 
     /// How far the nearest other of the postures is from `q`, one of them.

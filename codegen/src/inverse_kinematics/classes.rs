@@ -434,23 +434,26 @@ fn two_slides(chain: &Chain, length: &Number) -> Option<Class> {
     if chain.between.is_some() {
         return None;
     }
-    chain.arrangements().find_map(|mut way| {
+    let serving = chain.arrangements().filter_map(|mut way| {
         let places = |prismatic: bool| (1..6).filter(|place| way.prismatic[*place] == prismatic).collect::<Vec<_>>();
         let (&[a, b], &[r1, r2, r3]) = (places(true).as_slice(), places(false).as_slice()) else { return None };
         if way.prismatic[0] || (r1..r3).contains(&way.open) || stay_parallel(&way, a, b) {
             return None;
         }
-        if !turn_about_x(&mut way, r1, r2) || !turn_about_x(&mut way, r2, r3) || !general::reaches(chain, &way, [a, b], length) {
+        if !turn_about_x(&mut way, r1, r2) || !turn_about_x(&mut way, r2, r3) {
             return None;
         }
-        let joints = way.joints();
-        let class = format!(
-            "two prismatic joints (joints {}), with samples on the circle of q{}",
-            listed(&[joints[a], joints[b]]),
-            joints[0]
-        );
-        Some(Class { construction: Construction::TwoSlides(way, [a, b]), class, most: 8, choices: Vec::new() })
-    })
+        general::doubtful(chain, &way, [a, b], length).map(|doubtful| (doubtful, way, [a, b]))
+    });
+    // The one with the fewest doubtful poses; of equals the first.
+    let (_, way, slides) = serving.min_by_key(|(doubtful, ..)| *doubtful)?;
+    let joints = way.joints();
+    let class = format!(
+        "two prismatic joints (joints {}), with samples on the circle of q{}",
+        listed(&slides.map(|place| joints[place])),
+        joints[0]
+    );
+    Some(Class { construction: Construction::TwoSlides(way, slides), class, most: 8, choices: Vec::new() })
 }
 
 /// Whether two slides are parallel in every posture: no link between them, on the side of the loop without the pose, turns an axis.

@@ -49,23 +49,26 @@ fn pose(way: &block::Arrangement<6>, still: usize, length: f64, number: u64) -> 
     chain
 }
 
-/// Whether block 9 finds the posture of each of some fixed poses: directions of slides that are in one plane with what they have to reach at
-/// all poses, or joints that move nothing, leave an equation that vanishes.
-pub(super) fn reaches(chain: &Chain, way: &Arrangement, slides: [usize; 2], length: &Number) -> bool {
+/// At how many of some fixed poses block 9 does not tell how many postures there are, as where each root of its polynomial is a double one;
+/// nothing where it does not find the posture of one: directions of slides that are in one plane with what they have to reach at all poses, or joints
+/// that move nothing, leave an equation that vanishes.
+pub(super) fn doubtful(chain: &Chain, way: &Arrangement, slides: [usize; 2], length: &Number) -> Option<usize> {
     let (length, forward, floats) = (length.to_f64(), chain.arranged(0, false).rounded(), way.rounded());
-    (0..8).all(|number| {
-        let found = block::two_slides(&floats.links_at(&pose(&forward, chain.still, length, number)), slides, length);
-        found.count > 0 && !found.continuum
+    (0..8).try_fold(0, |doubtful, number| {
+        let links = floats.links_at(&pose(&forward, chain.still, length, number));
+        let found = block::two_slides(&links, floats.open, slides, length);
+        (found.count > 0 && !found.continuum).then(|| doubtful + usize::from(found.near))
     })
 }
 
-/// The two arrangements, the better one first.
+/// The two arrangements, the better one first. The second leaves another joint for last, if there is one that serves: solutions that share the value
+/// of the one joint do not share that of the other.
 pub(super) fn choose(chain: &Chain, length: &Number) -> Option<[Arrangement; 2]> {
     let length = length.to_f64();
     let forward = chain.arranged(0, false).rounded();
     let poses: Vec<block::Frame> = (0..POSES).map(|number| pose(&forward, chain.still, length, number)).collect();
-    // The best two, the better one first; of equals the first in the order of arrangements.
-    let mut best: Vec<(usize, f64, Arrangement)> = Vec::new();
+    // Those that serve, better ones first; of equals in the order of arrangements.
+    let mut serving: Vec<(usize, f64, Arrangement)> = Vec::new();
     'arrangements: for way in chain.arrangements() {
         let [p1, p2, p3, p4, p5, p6] = std::array::from_fn(|i| way.prismatic[i]);
         if p3 || p6 || (p4 && p5) || ((p1 || p2) && (p4 || p5)) {
@@ -73,24 +76,22 @@ pub(super) fn choose(chain: &Chain, length: &Number) -> Option<[Arrangement; 2]>
         }
         let floats = way.rounded();
         let (mut vanishing, mut doubtful, mut noise) = (0, 0, 0.0);
-        let is_less = |(d, n): (usize, f64), (x, y, _): &(usize, f64, Arrangement)| d.cmp(x).then(n.total_cmp(y)).is_lt();
         for t in &poses {
             let result = determinant_on_circle(&floats.links_at(t), floats.prismatic, length);
-            doubtful += usize::from(!result.complete);
+            doubtful += usize::from(!result.complete || result.crowded);
             vanishing += u64::from(result.free);
             noise += result.noise;
-            // Some always vanish for arms with parallel or intersecting axes. None of the sums falls any more.
-            if 2 * vanishing >= POSES || best.get(1).is_some_and(|second| !is_less((doubtful, noise), second)) {
+            // Some always vanish for arms with parallel or intersecting axes.
+            if 2 * vanishing >= POSES {
                 continue 'arrangements;
             }
         }
-        let place = best.iter().position(|other| is_less((doubtful, noise), other)).unwrap_or(best.len());
-        best.insert(place, (doubtful, noise, way));
-        best.truncate(2);
+        serving.push((doubtful, noise, way));
     }
-    let mut ways = best.into_iter().map(|(_, _, way)| way);
-    let first = ways.next()?;
+    serving.sort_by(|(d, n, _), (e, m, _)| d.cmp(e).then(n.total_cmp(m)));
+    let (_, _, first) = serving.first()?;
+    let other = serving.iter().find(|(doubtful, _, way)| way.order[2] != first.order[2] && 2 * *doubtful < poses.len());
     // With one usable arrangement only, it is its own second.
-    let second = ways.next().unwrap_or_else(|| first.clone());
-    Some([first, second])
+    let (_, _, second) = other.or(serving.get(1)).unwrap_or(&serving[0]);
+    Some([first.clone(), second.clone()])
 }

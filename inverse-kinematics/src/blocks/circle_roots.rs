@@ -37,6 +37,10 @@ pub struct CircleRoots<const M: usize> {
     pub shallow_count: usize,
     /// How often the function itself was asked for on an arc.
     pub anew: usize,
+    /// Centres of arcs on which it was: roots crowd there, or the function is small without a root.
+    pub weak: [[Real; 2]; 8],
+    /// How many of `weak` count; more if there was no room for some.
+    pub weak_count: usize,
     /// Of the first and the last root: within what they are one with what is found beside them, and whether f rises there.
     ends: [(Real, bool); 2],
 }
@@ -366,6 +370,8 @@ pub fn circle_roots<const N: usize, const M: usize>(
         shallow: [root; 4],
         shallow_count: 0,
         anew: 0,
+        weak: [[1.0, 0.0]; 8],
+        weak_count: 0,
         ends: [(0.0, false); 2],
     };
     let mut amplitude = 0.0;
@@ -430,6 +436,10 @@ pub fn circle_roots<const N: usize, const M: usize>(
                     let values = exact(&points);
                     let size = values.iter().fold(0.0, |size: Real, value| size.max(value.abs()));
                     if remainder <= sqrt(UNIT_ROUNDOFF) * size || h <= shortest {
+                        if let Some(weak) = found.weak.get_mut(found.weak_count) {
+                            *weak = [c, s];
+                        }
+                        found.weak_count += 1;
                         let t = interpolation(&values);
                         let error = 1000.0 * UNIT_ROUNDOFF * size + remainder + floor;
                         let widths = [shortest / h, SHALLOW / h];

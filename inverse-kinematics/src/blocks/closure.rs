@@ -397,3 +397,85 @@ fn merge<const N: usize>(found: &mut Branches<6, N>, closing: &Loop<6>, closed: 
     }
     found.add(Branch { joints: closed.joints, signs: 0, double, error: 0.0, free: 0 });
 }
+
+/// The solutions of a loop that start at poses beside: where some share a root of the equation that `solve` finds them by, they do not share it there.
+/// A solution at such a pose, about u^(1/5) away, is a start of Newton's method here. Four roots that are so far apart leave a product of
+/// u^(4/5), above its rounding.
+///
+/// - `open`: the place of the link that depends on the pose. `solve`: all solutions for other links; `near` if they may not be all.
+/// - Returns the solutions, and how many there are at each pose beside: 0xff where they may not be all. Poses come in pairs to both sides: near a
+///   fold, where two solutions meet, the side that has more leads to both. Newton's method from a regular solution next to a fold has nowhere else to go.
+fn poses_beside<const N: usize>(closing: &Loop<6>, open: usize, solve: impl Fn(&[Frame; 6]) -> Branches<6, N>) -> (Branches<6, N>, [usize; 6]) {
+    let mut found = Branches::new();
+    let mut counts = [0xff; 6];
+    let mut links = *closing.links;
+    for number in 0..6 {
+        // Each pair is nearer: less regular solutions start no further away than they can come from.
+        let size = if number < 2 { BESIDE } else if number < 4 { 0.25 * BESIDE } else { 0.0625 * BESIDE };
+        let size = if number % 2 == 0 { size } else { -size };
+        let beside = moved_beside(&DIRECTIONS[number / 2], size, closing.length);
+        if let (Some(link), Some(here)) = (links.get_mut(open), closing.links.get(open)) {
+            *link = compose(here, &beside);
+        }
+        let there = solve(&links);
+        if !there.near && !there.continuum {
+            counts[number] = there.count;
+        }
+        for branch in there.found() {
+            // Twice: where it has arrived it is judged by the rounding of the pose alone.
+            let closed = closing.close(&closing.close(&branch.joints, true).joints, false);
+            if closed.residual <= CLOSED * closing.length && is_within_rounding(&closed.joints, closing) {
+                merge(&mut found, closing, &closed, false);
+            }
+        }
+        if number % 2 == 1 && counts[number] == found.count && counts[number - 1] == found.count {
+            break;
+        }
+    }
+    (found, counts)
+}
+
+/// Whether what [`poses_beside`] has found is all: `known`, the number that is known by any way, and regular, and the poses of one pair have as many.
+fn are_all<const N: usize>(beside: &Branches<6, N>, counts: &[usize; 6], known: usize) -> bool {
+    let mut regular = beside.count == known;
+    for branch in beside.found() {
+        regular &= !branch.double;
+    }
+    let of = |pair: usize| counts[2 * pair] == known && counts[2 * pair + 1] == known;
+    regular && (of(0) || of(1) || of(2))
+}
+
+/// Whether slides are so short that their own rounding leaves the loop closed.
+fn is_within_rounding<const J: usize>(joints: &[[Real; 2]; J], closing: &Loop<J>) -> bool {
+    let mut largest: Real = 0.0;
+    for ([value, _], slides) in joints.iter().zip(&closing.prismatic) {
+        largest = if *slides { largest.max(value.abs()) } else { largest };
+    }
+    largest <= LONGEST_SLIDE * closing.length
+}
+
+/// A slide longer than this, in lengths of the arm, loses what a loop may stay open.
+const LONGEST_SLIDE: Real = if UNIT_ROUNDOFF < 1e-10 { 1e6 } else { 1e3 };
+
+/// How far poses beside are: about u^(1/5), rad or of the arm's length.
+const BESIDE: Real = if UNIT_ROUNDOFF < 1e-10 { 6e-4 } else { 3e-2 };
+
+/// Displacements to poses beside: a turn and a slide, of no particular direction.
+const DIRECTIONS: [[Real; 6]; 3] = [
+    [0.61, -0.37, 0.83, 0.29, 0.71, -0.53],
+    [-0.43, 0.79, 0.23, 0.67, -0.31, 0.89],
+    [0.47, 0.59, -0.73, -0.83, 0.41, 0.19],
+];
+
+/// The displacement by `size` in such a direction: Rx Ry Rz of its small angles, then the slide.
+fn moved_beside(direction: &[Real; 6], size: Real, length: Real) -> Frame {
+    let (cx, sx) = small_turn(size * direction[0]);
+    let (cy, sy) = small_turn(size * direction[1]);
+    let (cz, sz) = small_turn(size * direction[2]);
+    let [x, y, z] = [size * length * direction[3], size * length * direction[4], size * length * direction[5]];
+    [
+        [cy * cz, -cy * sz, sy, x],
+        [cx * sz + sx * sy * cz, cx * cz - sx * sy * sz, -sx * cy, y],
+        [sx * sz - cx * sy * cz, sx * cz + cx * sy * sz, cx * cy, z],
+    ]
+}

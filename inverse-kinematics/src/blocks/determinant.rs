@@ -9,8 +9,10 @@ pub struct Arranged {
     pub roots: usize,
     /// The largest of the orders above the degree, of 1: how much rounding there is in the determinant.
     pub noise: Real,
-    /// Each root led to one solution, nothing is near, and the noise is small: the solutions are all.
+    /// Each root led to one solution, nothing is near, and the noise is small: the solutions are all unless `crowded`.
     pub complete: bool,
+    /// Several solutions share a root, or nearly: rounding may have hidden some.
+    pub crowded: bool,
     /// The determinant vanishes identically.
     pub free: bool,
 }
@@ -59,10 +61,20 @@ impl Search<'_> {
     }
 
     /// q3 at a point of the circle, and the kernel of M there.
-    fn kernel_at(&self, point: [Real; 2]) -> ([Real; 2], [[Real; 6]; 2], usize) {
+    fn kernel_at(&self, point: [Real; 2]) -> ([Real; 2], [[Real; 6]; 2], usize, Real) {
         let (q3, _) = self.spread.at(point);
-        let (vectors, count) = kernel(&reduced(&self.eliminants.at(&[q3])).0);
-        (q3, vectors, count)
+        let (vectors, count, ratio) = kernel(&reduced(&self.eliminants.at(&[q3])).0);
+        (q3, vectors, count, ratio)
+    }
+
+    /// Whether solutions crowd on an arc on which the determinant is weak: M nearly loses a second rank there.
+    fn is_crowded(&self, roots: &CircleRoots<20>, ratio_on_arc: Real) -> bool {
+        let mut crowded = roots.weak_count > roots.weak.len();
+        for weak in roots.weak.iter().take(roots.weak_count) {
+            let (_, _, _, ratio) = self.kernel_at(*weak);
+            crowded |= !(ratio > ratio_on_arc);
+        }
+        crowded
     }
 
     /// All joints from q3 and a vector of the kernel, and by how much they leave the equations unmet.
@@ -70,11 +82,12 @@ impl Search<'_> {
         self.eliminants.joints(self.closing.links, &self.closing.prismatic, 1.0, q3, vector)
     }
 
-    /// Adds the solutions at the roots. Returns how many of them are new or none of the arm.
-    fn solve(&self, roots: &CircleRoots<20>, found: &mut Branches<6, 16>) -> usize {
-        let mut told = 0;
+    /// Adds the solutions at the roots. Returns how many of them are new or none of the arm, and whether some share a root, or nearly.
+    fn solve(&self, roots: &CircleRoots<20>, found: &mut Branches<6, 16>) -> (usize, bool) {
+        let (mut told, mut crowded) = (0, false);
         for root in roots.all.iter().take(roots.count) {
-            let (q3, mut vectors, mut count) = self.kernel_at([root.c, root.s]);
+            let (q3, mut vectors, mut count, ratio) = self.kernel_at([root.c, root.s]);
+            crowded |= !(ratio > CROWDED);
             if count == 2 {
                 (vectors, count) = products_in_pencil(&vectors);
             }
@@ -92,7 +105,7 @@ impl Search<'_> {
                 }
             }
         }
-        told
+        (told, crowded)
     }
 
     /// Adds a double solution at each minimum that is nearly a root, if there is one: as near as rounding of the pose, it may have been at this
@@ -100,7 +113,7 @@ impl Search<'_> {
     fn solve_shallow(&self, roots: &CircleRoots<20>, found: &mut Branches<6, 16>) -> bool {
         let mut all = true;
         for place in roots.shallow.iter().take(roots.shallow_count) {
-            let (q3, vectors, _) = self.kernel_at([place.c, place.s]);
+            let (q3, vectors, _, _) = self.kernel_at([place.c, place.s]);
             let closed = self.closing.nearest(&self.joints(q3, &vectors[0]).0, UNIT_ROUNDOFF);
             // The search may have gone to another posture nearby.
             let met = closed.residual <= 2.0 * ROUNDING && closed.double;
@@ -120,7 +133,7 @@ impl Search<'_> {
                 (place, least) = (j, sample.abs());
             }
         }
-        let (q3, vectors, _) = self.kernel_at([cosine_of_15_degrees(place), cosine_of_15_degrees(place + 18)]);
+        let (q3, vectors, _, _) = self.kernel_at([cosine_of_15_degrees(place), cosine_of_15_degrees(place + 18)]);
         self.closing.nearest(&self.joints(q3, &vectors[0]).0, 1e-2).residual
     }
 }
@@ -148,7 +161,7 @@ pub fn determinant_on_circle(links: &[Frame; 6], prismatic: [bool; 6], length: R
     let eliminants = Eliminants::new(&unit, &prismatic, 1.0);
     let mut spread = Spread::none();
     let (mut samples, mut largest) = sampled(&eliminants, &spread);
-    let mut result = Arranged { found: Branches::new(), roots: 0, noise: 1.0, complete: false, free: false };
+    let mut result = Arranged { found: Branches::new(), roots: 0, noise: 1.0, complete: false, crowded: false, free: false };
     // Each of 12 pivots of equations of norm 1 is at most that; below u^3 nothing is left.
     if !(largest > UNIT_ROUNDOFF * UNIT_ROUNDOFF * UNIT_ROUNDOFF) {
         result.free = largest <= UNIT_ROUNDOFF;
@@ -168,7 +181,10 @@ pub fn determinant_on_circle(links: &[Frame; 6], prismatic: [bool; 6], length: R
     if result.free {
         return result;
     }
-    let told = search.solve(&roots, &mut result.found);
+    let (told, crowded) = search.solve(&roots, &mut result.found);
+    // Where nothing has been found yet there is time.
+    let on_arc = if result.found.count > 0 { CROWDED_ON_ARC } else { 40.0 * CROWDED_ON_ARC };
+    result.crowded = crowded || search.is_crowded(&roots, on_arc);
     let shallow_met = search.solve_shallow(&roots, &mut result.found);
     result.complete = noise <= MOST_NOISE && told == roots.count && !roots.near && shallow_met;
     result.found.near = roots.near;
@@ -185,6 +201,12 @@ pub fn determinant_on_circle(links: &[Frame; 6], prismatic: [bool; 6], length: R
     result.found.miss *= length;
     result
 }
+
+/// A root at which the last but one pivot of M is below this times the first may be more roots than rounding lets one tell apart.
+const CROWDED: Real = if UNIT_ROUNDOFF < 1e-10 { 1e-5 } else { 3e-3 };
+
+/// The same at the centre of an arc, whose half width is at most 0.0123.
+const CROWDED_ON_ARC: Real = 5e-4;
 
 /// More rounding than this in the determinant calls for another arrangement.
 const MOST_NOISE: Real = 1e7 * UNIT_ROUNDOFF;

@@ -302,8 +302,8 @@ fn determinants<const L: usize>(e: &[[[Real; L]; 9]; 6]) -> [Real; L] {
 }
 
 /// The kernel of a nearly singular 6 x 6 matrix by complete pivoting: one vector, or two where the last two pivots are small. Columns are
-/// monomials x4^(1 + i) x5^j at 3 i + j.
-fn kernel(m: &[[[Real; 1]; 6]; 6]) -> ([[Real; 6]; 2], usize) {
+/// monomials x4^(1 + i) x5^j at 3 i + j. With them the last but one pivot over the first.
+fn kernel(m: &[[[Real; 1]; 6]; 6]) -> ([[Real; 6]; 2], usize, Real) {
     let mut flat = [[0.0; 6]; 6];
     for (flat, row) in flat.iter_mut().zip(m) {
         for (flat, [x]) in flat.iter_mut().zip(row) {
@@ -366,7 +366,7 @@ fn kernel(m: &[[[Real; 1]; 6]; 6]) -> ([[Real; 6]; 2], usize) {
             }
         }
     }
-    (vectors, count)
+    (vectors, count, pivots[4] / pivots[0])
 }
 
 /// Below this ratio of the last but one pivot to the first a kernel counts as two-dimensional.

@@ -1,5 +1,6 @@
 // The result of inverse kinematics as the emitted module gives it.
-// The module says before: DOF, MAX_SOLUTIONS, PRISMATIC: [bool; DOF], POSITION_LIMITS: [[Real; 2]; DOF] (lower and upper; infinite where there is none).
+// The module says before: DOF, MAX_SOLUTIONS, PRISMATIC: [bool; DOF], POSITION_LIMITS: [[Real; 2]; DOF] (lower and upper; infinite where there is none),
+// LENGTH: the arm's, m.
 
 /// What is known of all the solutions at a pose.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -13,7 +14,7 @@ pub enum Verdict {
     NearDouble,
     /// Some joints can move while the end effector stays.
     Continuum,
-    /// The pose has an entry that is not finite, or no rotation.
+    /// The pose has an entry that is not finite, or no rotation where that is asked for.
     Invalid,
 }
 
@@ -57,17 +58,21 @@ impl Solutions {
     }
 
     /// The postures within `POSITION_LIMITS`, angles moved by whole turns into them: by none if that does, else by as few as possible.
-    /// The verdict stays what it was.
+    /// A joint variable that is beyond a limit by at most `LIMIT_ERROR` (rad; of a slide times `LENGTH`) has been moved there by
+    /// the pose's error: it is put at the limit. The verdict stays what it was.
     pub fn within_limits(&self) -> Solutions {
         let mut within = Solutions { miss: self.miss, ..Solutions::none(self.verdict) };
         for solution in self.as_slice() {
             let mut moved = *solution;
             let mut inside = true;
             for ((q, [low, high]), prismatic) in moved.q.iter_mut().zip(POSITION_LIMITS).zip(PRISMATIC) {
+                let slack = if prismatic { LIMIT_ERROR * LENGTH } else { LIMIT_ERROR };
+                let (least, most) = (low - slack, high + slack);
                 if !prismatic {
-                    *q += WHOLE_TURN * whole_turns_between((low - *q) / WHOLE_TURN, (high - *q) / WHOLE_TURN);
+                    *q += WHOLE_TURN * whole_turns_between((least - *q) / WHOLE_TURN, (most - *q) / WHOLE_TURN);
                 }
-                inside &= low <= *q && *q <= high;
+                inside &= least <= *q && *q <= most;
+                *q = q.max(low).min(high);
             }
             if let (true, Some(slot)) = (inside, within.all.get_mut(within.count)) {
                 *slot = moved;
@@ -96,6 +101,10 @@ impl Solutions {
     }
 }
 
+/// How far beyond a limit a joint variable may be, rad, or in units of the arm's length, that the pose's own error has moved there: a rotation may be
+/// off by as much; in single precision 100 units of rounding over a smallest singular value of the Jacobian of 0.03.
+const LIMIT_ERROR: Real = if UNIT_ROUNDOFF < 1e-10 { 1e-6 } else { 2e-4 };
+
 /// 2 pi.
 const WHOLE_TURN: Real = 2.0 * HALF_TURN;
 
@@ -120,7 +129,19 @@ fn whole_turns_between(low: Real, high: Real) -> Real {
     0.0
 }
 
-/// Whether the first three rows of a pose are finite and its rotation is one, to 1e-6.
+/// Whether all entries are finite.
+fn all_finite(t: &[[Real; 4]; 4]) -> bool {
+    let mut sum = 0.0;
+    for row in t {
+        for x in row {
+            // NaN of an infinity, too.
+            sum += x - x;
+        }
+    }
+    sum == 0.0
+}
+
+/// Whether all entries of a pose are finite and its rotation is one, to 1e-6.
 fn is_pose(t: &[[Real; 4]; 4]) -> bool {
     let [x, y, z, _] = t;
     let rows = [[x[0], x[1], x[2]], [y[0], y[1], y[2]], [z[0], z[1], z[2]]];
@@ -130,8 +151,7 @@ fn is_pose(t: &[[Real; 4]; 4]) -> bool {
     let square = near(dot(u, u), 1.0) && near(dot(v, v), 1.0) && near(dot(u, v), 0.0);
     let third = cross(u, v);
     let right = near(third[0], w[0]) && near(third[1], w[1]) && near(third[2], w[2]);
-    let finite = [x[3], y[3], z[3]].iter().all(|p| p.is_finite());
-    finite && square && right
+    all_finite(t) && square && right
 }
 
 /// How far from orthonormal a rotation may be.

@@ -146,6 +146,29 @@ impl<'a> TwoSlides<'a> {
         }
     }
 
+    /// Whether axes t1 and t3 are parallel at some value of the given joint, or nearly: two solutions that differ in t1 and t3 share that value then.
+    /// The cosine between them is affine in the given joint's.
+    fn comes_near_parallel(&self) -> bool {
+        const H: Real = 0.866025403784438646763723170752936183;
+        let cosine = |given: [Real; 2]| inverse(&compose(&self.after, &joint_then(false, given, &self.before)))[2][2];
+        let (x, y, z) = (cosine([1.0, 0.0]), cosine([-0.5, H]), cosine([-0.5, -H]));
+        let middle = (x + y + z) / 3.0;
+        let amplitude = length(x - middle, (y - z) / (2.0 * H));
+        middle.abs() + amplitude > 1.0 - NEARLY_PARALLEL
+    }
+
+    /// Whether the slides are parallel in either branch, to an angle of this sine.
+    fn are_parallel(&self, at: &AtGiven, w: Real, most: Real) -> bool {
+        let [_, a, b] = self.displacements(&at.turns, at.square);
+        let mut parallel = true;
+        for w in [w, -w] {
+            let real = |v: [WithRoot; 3]| [v[0].at(w), v[1].at(w), v[2].at(w)];
+            let m = cross(real(a), real(b));
+            parallel &= dot(m, m) <= most * most;
+        }
+        parallel
+    }
+
     /// All joints for a given first one and a branch.
     fn joints(&self, given: [Real; 2], at: &AtGiven, w: Real) -> [[Real; 2]; 6] {
         let mut turned = [[1.0, 0.0]; 3];
@@ -179,10 +202,42 @@ impl<'a> TwoSlides<'a> {
 /// 12 samples of the product above give the polynomial of degree 4, its orders 5 and 6 the rounding; block R gives the first joint, the sign
 /// of f the branch, block 5 and two linear equations the rest, Newton's method the last digits.
 ///
-/// - `length`: the arm's own, > 0. At most 8 solutions; `signs` are 0: the block has no branches.
-/// - `near`: the number of solutions is not that of the roots, or rounding decides. The polynomial vanishes: `continuum`.
+/// - `open`: the place of the link that depends on the pose. `length`: the arm's own, > 0. At most 8 solutions; `signs` are 0: the block has no branches.
+/// - `near`: the number of solutions is not that of the roots, or rounding decides, and poses beside do not tell. The polynomial vanishes: `continuum`.
+/// - Where the slides are parallel f vanishes, whatever is left to slide: such a root is none of the arm, unless it closes the loop.
 /// - Without solutions `miss` is the residual of a least-squares posture (the links' unit, angles times `length`).
-pub fn two_slides(links: &[Frame; 6], slides: [usize; 2], length: Real) -> Branches<6, 8> {
+pub fn two_slides(links: &[Frame; 6], open: usize, slides: [usize; 2], length: Real) -> Branches<6, 8> {
+    let (mut found, crowded) = slides_on_circle(links, slides, length);
+    if found.near || crowded {
+        let mut prismatic = [false; 6];
+        for (i, kind) in prismatic.iter_mut().enumerate() {
+            *kind = slides.contains(&i);
+        }
+        let closing = Loop { links, prismatic, target: [0.0; 3], length };
+        let (beside, counts) = poses_beside(&closing, open, |links: &[Frame; 6]| slides_on_circle(links, slides, length).0);
+        let before = found.count;
+        for branch in beside.found() {
+            let closed = Closed { joints: branch.joints, residual: 0.0, double: branch.double };
+            merge(&mut found, &closing, &closed, false);
+        }
+        // In single precision poses beside are so far away that they do not outweigh what is in doubt here.
+        if UNIT_ROUNDOFF < 1e-10 {
+            if are_all(&beside, &counts, found.count) {
+                return Branches { miss: found.miss, ..beside };
+            }
+            found.near = true;
+        }
+        found.near |= found.count > before;
+    }
+    found
+}
+
+/// Two axes with a cosine of 1 less this are nearly parallel: 0.4 degrees apart, in single precision 6. Solutions that are further apart are told
+/// by their roots.
+const NEARLY_PARALLEL: Real = if UNIT_ROUNDOFF < 1e-10 { 2e-5 } else { 5e-3 };
+
+/// The same by one search on the circle; and whether solutions may share a root, or meet.
+fn slides_on_circle(links: &[Frame; 6], slides: [usize; 2], length: Real) -> (Branches<6, 8>, bool) {
     let mut found = Branches::new();
     let mut unit = *links;
     for row in unit.iter_mut().flatten() {
@@ -199,7 +254,7 @@ pub fn two_slides(links: &[Frame; 6], slides: [usize; 2], length: Real) -> Branc
     if !(largest > UNIT_ROUNDOFF * UNIT_ROUNDOFF) {
         found.continuum = largest <= UNIT_ROUNDOFF;
         found.near = !found.continuum;
-        return found;
+        return (found, false);
     }
     let (a, b, noise) = fourier::<12, 5>(&samples, largest);
     let over = 1.0 / largest;
@@ -216,33 +271,53 @@ pub fn two_slides(links: &[Frame; 6], slides: [usize; 2], length: Real) -> Branc
     }
     let closing = Loop { links: &unit, prismatic, target: [0.0; 3], length: 1.0 };
     found.continuum = roots.free;
+    // Roots that are none of the arm, and what makes the rest doubtful.
+    let (mut none, mut near) = (0, roots.count % 2 == 1 || roots.count == roots.all.len());
     for root in roots.all.iter().take(roots.count) {
         let given = [root.c, root.s];
         let at = arm.at(given);
         let w = sqrt(at.square.max(0.0));
         let (plus, minus) = (at.f.at(w).abs(), at.f.at(-w).abs());
+        let before = found.count;
         // The branch that vanishes, or both that nearly do.
         for (w, f) in [(w, plus), (-w, minus)] {
             if f <= plus.min(minus) + 1e-3 * (plus + minus) {
-                let closed = closing.close(&arm.joints(given, &at, w), root.double);
-                if closed.residual <= if root.double { 64.0 * CLOSED } else { CLOSED } {
+                let joints = arm.joints(given, &at, w);
+                if !is_within_rounding(&joints, &closing) {
+                    continue;
+                }
+                let closed = closing.close(&joints, root.double);
+                let met = closed.residual <= if root.double { 64.0 * CLOSED } else { CLOSED };
+                if met && is_within_rounding(&closed.joints, &closing) {
                     merge(&mut found, &closing, &closed, closed.residual > CLOSED);
                 }
             }
         }
+        // A double root is known to the root of rounding; two that rounding makes of it are beside it by as much.
+        let off = if root.double { 64.0 } else { 4.0 } * sqrt(UNIT_ROUNDOFF);
+        if found.count == before && arm.are_parallel(&at, w, off) {
+            none += 1;
+        } else {
+            near |= root.double;
+        }
     }
+    near |= roots.near && none == 0;
     let distinct = found.count;
     for root in roots.shallow.iter().take(roots.shallow_count) {
         let given = [root.c, root.s];
         let at = arm.at(given);
         let w = sqrt(at.square.max(0.0));
+        if UNIT_ROUNDOFF < 1e-10 && arm.are_parallel(&at, w, 64.0 * SHALLOW) {
+            continue;
+        }
         let w = if at.f.at(w).abs() <= at.f.at(-w).abs() { w } else { -w };
         let closed = closing.nearest(&arm.joints(given, &at, w), UNIT_ROUNDOFF);
-        if closed.residual <= 2.0 * ROUNDING && closed.double {
+        if closed.residual <= 2.0 * ROUNDING && closed.double && is_within_rounding(&closed.joints, &closing) {
             merge(&mut found, &closing, &closed, true);
         }
     }
-    found.near = !roots.free && (roots.near || distinct != roots.count);
+    let crowded = found.found().iter().any(|branch| branch.double) || arm.comes_near_parallel();
+    found.near = !roots.free && (near || distinct + none != roots.count);
     if found.count == 0 && !found.continuum {
         let (mut place, mut least) = (0, Real::INFINITY);
         for (j, sample) in samples.iter().enumerate() {
@@ -262,5 +337,5 @@ pub fn two_slides(links: &[Frame; 6], slides: [usize; 2], length: Real) -> Branc
             }
         }
     }
-    found
+    (found, crowded)
 }

@@ -189,7 +189,8 @@ pub fn plan(arm: &Arm) -> Plan {
     Plan::General { ways: Box::new(general_ways(arm, 40)) }
 }
 
-/// The two arrangements of block 8 with the fewest doubtful ones of some random poses, then with the least noise.
+/// The arrangement of block 8 with the fewest doubtful ones of some random poses, then with the least noise; and the next that leaves another joint for
+/// last.
 pub fn general_ways(arm: &Arm, poses: usize) -> [Arrangement<6>; 2] {
     let mut ways = vec![];
     for backward in [false, true] {
@@ -204,14 +205,16 @@ pub fn general_ways(arm: &Arm, poses: usize) -> [Arrangement<6>; 2] {
             for _ in 0..poses {
                 let t = arm.at(&arm.posture(random));
                 let result = determinant_on_circle(&way.links_at(&t), way.prismatic, arm.length());
-                doubtful += usize::from(!result.complete);
+                doubtful += usize::from(!result.complete || result.crowded);
                 noise += result.noise;
             }
             ways.push((doubtful, noise, way));
         }
     }
     ways.sort_by(|x, y| x.0.cmp(&y.0).then(x.1.total_cmp(&y.1)));
-    [ways[0].2, ways[1].2]
+    let first = ways[0].2;
+    let other = ways.iter().find(|(doubtful, _, way)| way.order[2] != first.order[2] && 2 * *doubtful < poses);
+    [first, other.unwrap_or(&ways[1]).2]
 }
 
 /// All solutions in the arm's order.

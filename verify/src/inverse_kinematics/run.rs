@@ -186,7 +186,7 @@ fn of_rest(text: &Text, t: &block::Frame, moved: Option<(usize, block::Frame)>, 
         }
         Construction::TwoSlides { slides } => {
             let way = arrangement::<6>(first)?;
-            in_order(text, t, &way, block::two_slides(&way.links_at(t), [slides[0], slides[1]], length))
+            in_order(text, t, &way, block::two_slides(&way.links_at(t), way.open, [slides[0], slides[1]], length))
         }
         Construction::Position { case: name, polished } => {
             let way = arrangement::<3>(first)?;

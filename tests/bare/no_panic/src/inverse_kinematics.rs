@@ -105,7 +105,7 @@ macro_rules! every_block {
                 }
                 whole(three_parallel(&links), &links);
                 whole(three_prismatic(&links, black_box([0, 2, 4])), &links);
-                whole(two_slides(&links, black_box([1, 3]), number()), &links);
+                whole(two_slides(&links, black_box(5), black_box([1, 3]), number()), &links);
                 solutions(&general_arm(&[way(), way()], &frame(), number()));
                 few::<1>(&links);
                 few::<2>(&links);
