@@ -43,7 +43,7 @@ fn words(name: &str) -> Vec<String> {
 pub(super) fn tool(name: &str) -> Option<usize> {
     let words = words(name);
     let fits = |tool: &&[&str]| words.windows(tool.len()).any(|some| some.iter().eq(tool.iter()));
-    TOOLS.iter().position(|tool| fits(tool))
+    TOOLS.iter().position(fits)
 }
 
 /// Whether a joint of such names moves a finger. A gripper may be a link of the arm, so of links that word alone is no sign.
