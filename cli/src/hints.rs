@@ -16,7 +16,10 @@ pub(crate) fn of(arguments: &[String]) -> Option<String> {
         (_, "yaml" | "yml") => {
             return Some(format!("say what to do with the file: `armgen check {command}`, `armgen show {command}`, `armgen page {command}`"))
         }
-        (_, "urdf" | "xml" | "mjcf") => return Some(format!("make a description of the file first: `armgen import {command} --out robot.yaml`")),
+        (_, "rs" | "h" | "mjs" | "py" | "m") => {
+            return Some(format!("say what to do with the file: `armgen verify robot.yaml {command}` compares it with its description"))
+        }
+        (_, "urdf" | "xml" | "mjcf" | "xacro" | "sdf") => return Some(format!("make a description of the file first: `armgen import {command} --out robot.yaml`")),
         ("plot" | "draw" | "view" | "visualize" | "show3d", _) => {
             return Some("there is no such command: `armgen page robot.yaml` draws the arm, and the command `run` draws the curves of experiments".into())
         }
@@ -60,6 +63,7 @@ mod tests {
     fn words_of_other_programs_have_an_answer() {
         check("px4.yaml", "`armgen check px4.yaml`");
         check("arm.urdf", "`armgen import arm.urdf");
+        check("arm.h", "`armgen verify robot.yaml arm.h`");
         check("plot px4.yaml", "`armgen page");
         check("simulate px4.yaml", "`run`");
         check("show px4.yaml --latex", "`--format latex`");

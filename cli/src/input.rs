@@ -16,6 +16,19 @@ use armgen_terminal::input::{text, LONGEST, OTHERS_ARE_SHORT};
 use crate::terminal;
 use crate::{FAULTY, UNREADABLE};
 
+/// The text of a description; of a file of XML, the exit code after a message with the command that makes it a description.
+pub(crate) fn description(path: &Path) -> Result<Source, u8> {
+    let source = source(path)?;
+    if source.text().trim_start().starts_with('<') {
+        let name = source.name();
+        terminal::error(&format!(
+            "{name} is XML, not a description: of a URDF or a MuJoCo model `armgen import {name} --out robot.yaml` makes one"
+        ));
+        return Err(FAULTY);
+    }
+    Ok(source)
+}
+
 /// The text of a log, which may well be longer than what is read: whoever has it is told what to do.
 pub(crate) fn log(path: &Path) -> Result<Source, u8> {
     let samples = armgen_page::SAMPLES;
@@ -122,7 +135,7 @@ pub(crate) fn verdict(source: &Source, diagnostics: &Diagnostics) -> String {
 
 /// The model of a file's arm.
 pub(crate) fn model(path: &Path) -> Result<Model, u8> {
-    let source = source(path)?;
+    let source = description(path)?;
     let (manipulator, _) = manipulator(&source, Scalar::F64, Warnings::Counted)?;
     Ok(Model::new(manipulator))
 }

@@ -157,6 +157,7 @@ Exit codes: 0 done, 1 the description is faulty, 2 a file cannot be read or writ
   armgen import robot.urdf --out robot.yaml
   armgen import robot.urdf --tip tool0 --lock finger_joint=0.04 --out robot.yaml
   armgen import robot.urdf --snap 0 --report report.json > robot.yaml
+  xacro robot.urdf.xacro | armgen import - --out robot.yaml
 
 The chain goes from the root, or --base, to the only tip that there is, or --tip. Fixed joints
 become poses, and what hangs on a link beside the chain becomes part of it, exactly. 1.5708 is
@@ -165,7 +166,7 @@ description. The format: docs/import.md.
 Exit codes: 0 done, 1 the file, or the file with these options, is refused,
 2 a file cannot be read or written.")]
     Import {
-        /// URDF or MuJoCo model of the robot
+        /// URDF or MuJoCo model of the robot; `-` for standard input
         #[arg(value_name = "FILE", value_hint = ValueHint::FilePath)]
         file: PathBuf,
         #[command(flatten)]

@@ -22,6 +22,7 @@ use armgen_codegen::{derive, inverse_kinematics, validate, Model};
 use crate::table::{Align, Table};
 use crate::{input, terminal, DONE, FAULTY};
 
+use super::convert;
 use super::verify::with_spinner;
 
 /// Checks every file; the exit code is the worst of them.
@@ -48,7 +49,7 @@ pub(crate) struct Doubts {
 
 /// The summary, and the exit code.
 fn checked(file: &Path, doubts: &Doubts, full: bool) -> Result<(String, u8), u8> {
-    let source = input::source(file)?;
+    let source = input::description(file)?;
     let (valid, mut diagnostics) = validate::read_for(&source, Scalar::F64);
     diagnostics.allow(&doubts.allow);
     let (manipulator, places) = input::report_or_exit_code(&source, valid, &diagnostics, input::Warnings::Shown)?;
@@ -97,7 +98,7 @@ fn summary(source: &Source, description: &RobotDescription, model: &Model, diagn
     let distances = posture::distances(manipulator);
     let parts = match full {
         true => vec![
-            Some(arm(description, manipulator)),
+            Some(arm(source, description, manipulator)),
             Some(joints::rows(source, description, manipulator)),
             joints::limits(manipulator),
             joints::drives(manipulator),
@@ -109,7 +110,7 @@ fn summary(source: &Source, description: &RobotDescription, model: &Model, diagn
             Some(ADVICE.into()),
         ],
         false => vec![
-            Some(arm(description, manipulator)),
+            Some(arm(source, description, manipulator)),
             Some(joints::rows(source, description, manipulator)),
             Some(bodies::masses(manipulator, &distances)),
             posture::carried(manipulator),
@@ -120,7 +121,7 @@ fn summary(source: &Source, description: &RobotDescription, model: &Model, diagn
 }
 
 /// The arm as a whole.
-fn arm(description: &RobotDescription, manipulator: &Manipulator) -> String {
+fn arm(source: &Source, description: &RobotDescription, manipulator: &Manipulator) -> String {
     let mut table = Table::new([("", Align::Left), ("", Align::Left)]);
     // Beside the longest of the names.
     let width = terminal::width() - "  mass of links and rotors  ".len();
@@ -175,7 +176,15 @@ fn arm(description: &RobotDescription, manipulator: &Manipulator) -> String {
         "inverse kinematics",
         match inverse_kinematics::of(manipulator) {
             Ok(found) => format!("{}: at most {}", found.class, input::counted(found.most, "solution")),
-            Err(reason) => format!("none: {reason}"),
+            // Two lines always have a common normal, which a row of 17 digits holds where no short number does.
+            Err(reason) => match convert::of_rows(source) {
+                Some(found) => format!(
+                    "of the rows that `armgen convert --convention standard` writes: {}, at most {}",
+                    found.class,
+                    input::counted(found.most, "solution")
+                ),
+                None => format!("none: {reason}"),
+            },
         },
     );
     let names = manipulator.parameters.len();

@@ -13,7 +13,7 @@ pub(crate) enum Format {
 }
 
 pub(crate) fn run(file: &Path, format: Format, out: Option<&PathBuf>) -> u8 {
-    let source = match input::source(file) {
+    let source = match input::description(file) {
         Ok(source) => source,
         Err(code) => return code,
     };

@@ -15,6 +15,7 @@ use armgen_codegen::Generated;
 use armgen_verify::certificate::Certificate;
 use armgen_verify::reader::ModuleText;
 
+use super::convert;
 use super::verify::{certificate_beside, with_spinner};
 use crate::output::{place, same_file, write};
 use crate::{companions, file_names, input, terminal, ScalarName, TrigName, DONE, FAULTY, UNREADABLE};
@@ -123,7 +124,7 @@ pub(crate) fn run(file: &Path, out: Option<&Path>, choices: &Choices, beside: &B
         ));
         return UNREADABLE;
     }
-    let source = match input::source(file) {
+    let source = match input::description(file) {
         Ok(source) => source,
         Err(code) => return code,
     };
@@ -145,7 +146,11 @@ pub(crate) fn run(file: &Path, out: Option<&Path>, choices: &Choices, beside: &B
             ));
             return FAULTY;
         }
-        terminal::warning(&format!("there is no inverse kinematics: {reason}"));
+        let remedy = match convert::of_rows(&source) {
+            Some(_) => format!("; the rows that `armgen convert {} --convention standard` writes have one", source.name()),
+            None => String::new(),
+        };
+        terminal::warning(&format!("there is no inverse kinematics: {reason}{remedy}"));
     }
     // The bounds are those of one state at a time.
     if choices.batch.is_none() {

@@ -1,17 +1,19 @@
 //! `armgen import`: a URDF to a robot.yaml.
 
 use std::collections::BTreeMap;
+use std::io::Read;
 use std::path::{Path, PathBuf};
 
-use armgen_codegen::diagnostic::Severity;
-use armgen_codegen::inverse_kinematics;
+use armgen_codegen::diagnostic::{Diagnostics, Severity};
+use armgen_codegen::inverse_kinematics::{self, Construction, InverseKinematics};
 use armgen_codegen::source::Source;
 use armgen_import::{Imported, Options};
+use armgen_terminal::input::LONGEST;
 use clap::{Args, ValueHint};
 
-use super::convert::To;
+use super::convert::{self, To};
 use crate::output::{same_file, write};
-use crate::{input, terminal, DONE, UNREADABLE};
+use crate::{input, terminal, DONE, FAULTY, UNREADABLE};
 
 /// Which arm of the file, and how it is read.
 #[derive(Debug, Args)]
@@ -69,8 +71,43 @@ pub(crate) struct Results {
 /// Of so many bodies beside the links import says what the equations refuse.
 const MOST_BODIES: usize = 30;
 
+/// The name by which standard input is asked for.
+const STANDARD_INPUT: &str = "-";
+
+/// The text of a file, or of standard input, with the files that a MuJoCo model includes.
+fn source_of(file: &Path) -> Result<Source, u8> {
+    let piped = file == Path::new(STANDARD_INPUT);
+    let source = if piped { piped_in()? } else { input::source(file)? };
+    let beside = |path: &str| match piped {
+        true => Err("standard input is in no folder: name the file of the model".to_owned()),
+        false => armgen_import::build_script::beside(file.parent().unwrap_or(Path::new("")), path),
+    };
+    armgen_import::included(&source, &beside).map_err(|fault| {
+        let mut faults = Diagnostics::new();
+        faults.push(*fault);
+        terminal::diagnose(&faults.render(&source, terminal::colour(&std::io::stderr())));
+        terminal::error(&input::verdict(&source, &faults));
+        FAULTY
+    })
+}
+
+/// The text of standard input.
+fn piped_in() -> Result<Source, u8> {
+    let mut bytes = Vec::new();
+    let read = std::io::stdin().lock().take(LONGEST as u64 + 1).read_to_end(&mut bytes);
+    let text = match read {
+        Err(error) => Err(format!("cannot read standard input: {error}")),
+        Ok(_) if bytes.len() > LONGEST => Err(format!("standard input is longer than {} MiB", LONGEST >> 20)),
+        Ok(_) => String::from_utf8(bytes).map_err(|_| "standard input is not UTF-8".to_owned()),
+    };
+    text.map(|text| Source::new("standard input", text)).map_err(|reason| {
+        terminal::error(&reason);
+        UNREADABLE
+    })
+}
+
 pub(crate) fn run(file: &Path, choices: Choices, results: &Results) -> u8 {
-    let source = match input::source(file) {
+    let source = match source_of(file) {
         Ok(source) => source,
         Err(code) => return code,
     };
@@ -78,7 +115,6 @@ pub(crate) fn run(file: &Path, choices: Choices, results: &Results) -> u8 {
         terminal::error("--name takes letters, digits and `_`, a letter first");
         return UNREADABLE;
     }
-    let every_digit = choices.snap == 0.0;
     let Choices { base, tip, lock, name, snap, massless, inertia_as_written, convention } = choices;
     let options = Options { base, tip, lock, name, snap, massless, inertia_as_written, convention: convention.into() };
     let (imported, diagnostics) = armgen_import::import(&source, &options);
@@ -102,7 +138,7 @@ pub(crate) fn run(file: &Path, choices: Choices, results: &Results) -> u8 {
     // What only the description shows, such as a last link without inertia about its axis. Of a humanoid beside its arm that takes seconds, and
     // `armgen check` says it of every description.
     if imported.report.attached() <= MOST_BODIES {
-        note_faults(&imported, results, every_digit);
+        note_faults(&source, &options, &imported, results);
     }
     let json = imported.report.to_json();
     for (path, text) in [(&results.report, &json), (&results.out, &imported.yaml)] {
@@ -118,9 +154,8 @@ pub(crate) fn run(file: &Path, choices: Choices, results: &Results) -> u8 {
     }
 }
 
-/// Faults of the description that only its equations show, the kinds of its warnings, and why an arm whose every digit is taken has no inverse
-/// kinematics.
-fn note_faults(imported: &Imported, results: &Results, every_digit: bool) {
+/// Faults of the description that only its equations show, the kinds of its warnings, and what becomes of inverse kinematics.
+fn note_faults(source: &Source, options: &Options, imported: &Imported, results: &Results) {
     let called = results.out.as_deref().map_or_else(|| "the description".to_owned(), |out| out.display().to_string());
     let as_description = Source::new(called.as_str(), imported.yaml.clone());
     let (valid, of_description) = armgen_codegen::validate::read(&as_description);
@@ -134,10 +169,41 @@ fn note_faults(imported: &Imported, results: &Results, every_digit: bool) {
         let kinds: Vec<String> = kinds.iter().map(|(kind, count)| format!("{count} {kind}")).collect();
         terminal::note(&format!("{called} has warnings, which `armgen check` shows: {}", kinds.join(", ")));
     }
-    let Some((manipulator, _)) = valid.filter(|_| every_digit) else { return };
-    if let Err(reason) = inverse_kinematics::of(&manipulator) {
-        terminal::note(&format!(
-            "{called} has no inverse kinematics: {reason}; digits that stand for pi/2 leave axes that meet nearly, which an import without `--snap 0` or rows of `armgen convert` may mend"
-        ));
+    // Digits that stand for pi/2 and are taken as written leave axes that meet nearly.
+    if let Some((manipulator, _)) = valid.filter(|_| imported.report.near() > 0) {
+        note_inverse_kinematics(source, options, &as_description, &inverse_kinematics::of(&manipulator));
+    }
+}
+
+/// Tolerances that may restore what digits were rounded from, rad.
+const SNAPS: [f64; 2] = [1e-3, 2e-3];
+
+/// What inverse kinematics an arm with rounded angles has, which `--snap` gives it a closed form, and what that costs.
+fn note_inverse_kinematics(source: &Source, options: &Options, description: &Source, found: &Result<InverseKinematics, String>) {
+    let is_closed = |found: &InverseKinematics| !matches!(found.construction, Construction::General(_));
+    if found.as_ref().is_ok_and(is_closed) {
+        return;
+    }
+    let snapped = SNAPS.into_iter().filter(|&snap| snap > options.snap).find_map(|snap| {
+        let imported = armgen_import::import(source, &Options { snap, ..options.clone() }).0?;
+        let snapped = Source::new("robot.yaml", imported.yaml);
+        let (manipulator, _) = armgen_codegen::validate::read(&snapped).0?;
+        let found = inverse_kinematics::of(&manipulator).ok().filter(is_closed)?;
+        Some(format!(
+            "`--snap {snap:e}` gives inverse kinematics a closed form, {}: the end effector then moves by at most {:.1e} m, within the limits",
+            found.class,
+            imported.report.moved()
+        ))
+    });
+    if let Some(line) = snapped {
+        terminal::note(&line);
+    }
+    let Err(reason) = found else { return };
+    match convert::of_rows(description) {
+        Some(found) => terminal::note(&format!(
+            "inverse kinematics are those of its rows, of 17 digits: import it with `--convention standard`: {}",
+            found.class
+        )),
+        None => terminal::note(&format!("there is no inverse kinematics: {reason}")),
     }
 }

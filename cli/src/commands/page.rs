@@ -26,7 +26,7 @@ pub(crate) fn run(file: &Path, out: Option<PathBuf>, logs: &[PathBuf]) -> u8 {
             Err(code) => return code,
         }
     }
-    let source = match input::source(file) {
+    let source = match input::description(file) {
         Ok(source) => source,
         Err(code) => return code,
     };

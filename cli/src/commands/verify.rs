@@ -31,7 +31,7 @@ pub(crate) fn run(description: &Path, module: &Path, language: Option<Language>)
 }
 
 fn verified(description: &Path, module: &Path, language: Option<Language>) -> Result<u8, u8> {
-    let source = input::source(description)?;
+    let source = input::description(description)?;
     // `.` has no name that a certificate could stand beside.
     let named = module.file_name().is_none().then(|| module.canonicalize().ok()).flatten();
     let module = named.as_deref().unwrap_or(module);
