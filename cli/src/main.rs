@@ -136,10 +136,12 @@ A QUANTITY is the name of an emitted function (`armgen count FILE` lists them), 
   armgen generate robot.yaml --language c --out robot.h   the same functions in C, without Rust
   armgen generate robot.yaml --language matlab --out +robot
   armgen generate robot.yaml --functions gravity,inertia_matrix_with > robot.rs
+  armgen generate robot.yaml --out robot.rs --check       is the file up to date? (for CI)
 
 The module is one file of free functions over arrays, in MATLAB a folder: in Rust no allocation,
 no std, no dependency but libm.
-Exit codes: 0 done, 1 the description is faulty, 2 a file cannot be read or written.")]
+Exit codes: 0 done, 1 the description is faulty or with --check a file differs,
+2 a file cannot be read or written.")]
     Generate {
         /// Description of the robot arm
         #[arg(value_name = "FILE", value_hint = ValueHint::FilePath)]

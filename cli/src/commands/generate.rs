@@ -1,6 +1,7 @@
 //! `armgen generate`: the module as a file or on standard output, and what stands beside the file on request.
 
 use std::collections::BTreeSet;
+use std::io::ErrorKind;
 use std::path::{Path, PathBuf};
 
 use armgen_codegen::diagnostic::Colour;
@@ -78,6 +79,9 @@ pub(crate) struct Beside {
     /// --language c robot_ik.h, with --tests robot_ik_test.c too
     #[arg(long)]
     ik: bool,
+    /// Write nothing: compare the files with what would be written, and fail where one is missing or differs
+    #[arg(long, requires = "out")]
+    check: bool,
 }
 
 impl Beside {
@@ -170,6 +174,9 @@ pub(crate) fn run(file: &Path, out: Option<&Path>, choices: &Choices, beside: &B
             return FAULTY;
         }
     };
+    if beside.check {
+        return compared(&files, &source);
+    }
     if let Err(error) = write_all(&files, file, (language == Language::Matlab).then_some(out)) {
         terminal::error(&error);
         return UNREADABLE;
@@ -179,6 +186,26 @@ pub(crate) fn run(file: &Path, out: Option<&Path>, choices: &Choices, beside: &B
     }
     warn_of_stale(&source, language, out, beside, &files);
     DONE
+}
+
+/// Compares files with what would be written, and names those that differ.
+fn compared(files: &[Output], source: &Source) -> u8 {
+    let mut code = DONE;
+    for (path, text) in files {
+        let why = match std::fs::read(path) {
+            Ok(found) if found == text.as_bytes() => continue,
+            Ok(found) => companions::why_different(&String::from_utf8_lossy(&found), source),
+            Err(error) if error.kind() == ErrorKind::NotFound => "is missing".to_owned(),
+            Err(error) => format!("cannot be read: {error}"),
+        };
+        terminal::error(&format!("{} {why}", path.display()));
+        code = FAULTY;
+    }
+    terminal::note(&match code {
+        DONE => format!("{} as the description gives them", input::counted(files.len(), "file")),
+        _ => "the same command without `--check` writes all of its files again".to_owned(),
+    });
+    code
 }
 
 /// What is left beside a new module of one that was there before.

@@ -38,6 +38,9 @@ fn a_certificate_is_written_and_verified_again() {
         assert!(err(&output).contains(&format!("robot.rs:{line}: gravity[2]: ")), "{}", err(&output));
         assert!(err(&output).contains("differs from the equations"), "{}", err(&output));
         assert!(err(&output).contains("] the module says -9.82"), "{}", err(&output));
+        // The command that mends it writes a module of the same scalar.
+        assert!(err(&output).contains("robot.rs was edited"), "{}", err(&output));
+        assert_eq!(err(&output).contains(" --scalar f32 --out "), scalar == "f32", "{}", err(&output));
         // Generating without --verify leaves no doubt about the certificate that is still there.
         let output = check(&["generate", &yaml, "--scalar", scalar, "--out", path], 0);
         assert!(err(&output).contains("robot.cert.json was not written again"), "{}", err(&output));

@@ -169,3 +169,34 @@ fn products_out_of_range_are_told_before_anything_is_printed() {
         }
     }
 }
+
+/// With `--check` nothing is written, and each file that is missing, stale or edited is named.
+#[test]
+fn generate_compares_files_with_what_it_would_write() {
+    let folder = folder("compared");
+    let (description, text) = copied(&folder, "robot.yaml");
+    let (yaml, module) = (description.to_str().expect("UTF-8"), folder.join("robot.mjs"));
+    let generate = |more: &[&str], code| {
+        let fixed = ["generate", yaml, "--language", "javascript", "--out", module.to_str().expect("UTF-8")];
+        err(&check(&[&fixed[..], more].concat(), code))
+    };
+    let said = generate(&["--check"], 1);
+    assert!(said.contains("robot.mjs is missing") && said.contains("robot.d.mts is missing"), "{said}");
+    assert!(!module.exists(), "nothing is written");
+    generate(&[], 0);
+    assert!(generate(&["--check"], 0).contains("2 files as the description gives them"));
+    let right = fs::read_to_string(&module).expect("the module");
+    let edited = format!("{right}\n");
+    fs::write(&module, &edited).expect("a file");
+    let said = generate(&["--check"], 1);
+    assert!(said.contains("robot.mjs was edited") && !said.contains("robot.d.mts"), "{said}");
+    assert_eq!(fs::read_to_string(&module).expect("still there"), edited);
+    fs::write(&module, right).expect("a file");
+    fs::write(&description, [&text[..], b"\n"].concat()).expect("a description");
+    let said = generate(&["--check"], 1);
+    assert!(said.contains("robot.mjs is stale: it was made from another text of"), "{said}");
+    let said = err(&check(&["verify", yaml, module.to_str().expect("UTF-8")], 1));
+    let last = said.lines().last().unwrap_or_default();
+    assert!(last.contains("robot.mjs is stale") && last.contains("--language javascript --out"), "{said}");
+    assert_eq!(check(&["generate", yaml, "--check"], 2).stdout, b"");
+}
