@@ -299,7 +299,7 @@ impl Body {
         self.sampling().map_or(0.0, |sampling| sampling.duration.as_secs_f64())
     }
 
-    /// The path, if there is one.
+    /// The path, if any.
     pub fn sampling(&self) -> Option<&Sampling> {
         match self {
             Body::Postures(_) => None,
