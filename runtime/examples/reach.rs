@@ -1,7 +1,7 @@
 //! Finds joint variables for a pose of the end effector by closed-loop inverse kinematics, damped near singular postures.
 //!
-//! `Scara` stands for your robot: with a module from `armgen generate` take `robot::Nominal` and `Task::from_indices(robot::TASK)`.
-//! Of an arm with all solutions in closed form, `armgen generate --ik` writes these.
+//! Replace `Scara` by your robot: `robot::Nominal` and `Task::from_indices(robot::TASK)` of a module from `armgen generate`. If
+//! all solutions of the arm have a closed form, `armgen generate --ik` writes them.
 
 use std::error::Error;
 

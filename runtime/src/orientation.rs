@@ -26,8 +26,8 @@ fn axial<T: RealField + Copy>(e: &Matrix3<T>) -> Vector3<T> {
 
 /// Rotation vector theta r of the rotation matrix `e`, theta in [0, pi]; rad.
 ///
-/// Accurate to a few roundings for every angle, half a turn included, where the sign of r is free and the first component of r
-/// of a size above 1e-3 is taken positive.
+/// Accurate to a few roundings for every angle. At half a turn the sign of r is free: the first component with a magnitude above
+/// 1e-3 is taken positive.
 pub fn rotation_vector<T: RealField + Copy>(e: &Matrix3<T>) -> Vector3<T> {
     let v = axial(e);
     let (sine, cosine) = (v.norm(), (e.trace() - T::one()) * lit::<T>(0.5));

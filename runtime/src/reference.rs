@@ -1,4 +1,4 @@
-//! What is desired of an arm, and what it does, at one instant.
+//! References and states of an arm at one instant.
 
 use crate::{linalg::is_finite, robot::Kinematics};
 use nalgebra::{Matrix3, Matrix4, RealField, SVector, Vector3, Vector6};

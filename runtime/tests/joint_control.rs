@@ -1,6 +1,6 @@
 //! Robust and adaptive control of the SCARA in joint space, with a load of 5 kg that the model does not know.
 //!
-//! Stored errors and efforts are those of the technical project, docs/technical-project.md.
+//! Stored errors and efforts come from the technical project, docs/technical-project.md.
 
 use crate::common;
 

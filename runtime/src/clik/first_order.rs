@@ -19,7 +19,7 @@ pub struct Rates<T, const N: usize> {
 
 /// A law that turns errors into joint rates.
 pub trait Algorithm<R: Kinematics<N>, const N: usize, const M: usize> {
-    /// Diagonal of K. The law stands where J' K e = 0, as far as joint rates follow from the error.
+    /// Diagonal of K. The joint rates that follow from the error vanish where J' K e = 0.
     fn gain(&self) -> SVector<R::Real, M>;
 
     /// Joint rates, rad/s or m/s, at `q` for the error `e` of the task rows, desired minus actual, the desired velocity `v` of the rows and their

@@ -8,10 +8,12 @@
 //! q += T_s dq + 1/2 T_s^2 ddq,    dq += T_s ddq
 //! ```
 //!
-//! A controller that is given (q_d, dq_d, ddq_d) and holds its torque needs the latter: with the former, q_d and ddq_d contradict each
-//! other, and the controller follows the contradiction. One sample of the latter does as well: that at which a joint meets its limit. The
-//! joint stands at the limit with the rate 0 at the next sample, ddq = -dq / T_s, so its q is off this motion, by at most T_s / 2 times the
-//! larger of its rate and the rate that it would have had.
+//! A controller that receives (q_d, dq_d, ddq_d) and holds its torque needs the hold-consistent form. With explicit Euler q_d and
+//! ddq_d contradict each other, and the controller follows the contradiction.
+//!
+//! One sample of the hold-consistent form is inconsistent too: the sample at which a joint meets its limit. At the next sample
+//! the joint is at the limit with rate 0, so ddq = -dq / T_s. Its q differs from the held motion by at most T_s / 2 times the
+//! larger of its rate and the rate without the limit.
 //!
 //! Sampled, errors of linear rows die away where
 //!

@@ -54,8 +54,8 @@ impl<T: RealField + Copy, const M: usize, const N: usize> RightInverse<T, M, N> 
         (Self { q, r }, full_rank)
     }
 
-    /// The factors of [J, lambda I], M x (N + M), of which q is kept but for its last rows: what `solve` gives then is the part in J of the
-    /// least (x, z) with J x + lambda z = v, which is x = J' (J J' + lambda^2 I)^-1 v, and no condition number is squared.
+    /// The factors of [J, lambda I], M x (N + M); q is kept without its last rows. `solve` then returns the x of the least (x, z)
+    /// with J x + lambda z = v. This is x = J' (J J' + lambda^2 I)^-1 v, computed without squaring a condition number.
     fn damped(j: &SMatrix<T, M, N>, lambda: T) -> Self {
         let (mut q, mut tails) = (j.transpose(), SMatrix::<T, M, M>::from_diagonal_element(lambda));
         let mut r = SMatrix::<T, M, M>::zeros();

@@ -10,7 +10,7 @@ pub struct Plant<'a, R, T, const N: usize> {
     robot: &'a R,
     state: State<T, N>,
     integrator: Integrator<T>,
-    /// What the adaptive integrator tries next.
+    /// Next step of the adaptive integrator, s.
     step: T,
     audit: Option<Audit<T>>,
 }

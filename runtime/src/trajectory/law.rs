@@ -9,9 +9,9 @@
 //!   = 1 - 1/2 (T - t)^2 / (t_c (T - t_c))    T - t_c <= t < T           (the book, Sect. 4.2.1, eq. 4.8)
 //! ```
 //!
-//! Given T and a, t_c = T/2 - sqrt(T^2/4 - L/a) (eq. 4.6), here (L/a) / (T/2 + sqrt(T^2/4 - L/a)), in which nothing cancels; given T and
-//! v, t_c = T - L/v (eq. 4.10). Given limits of v and a, the shortest trapezoid has t_c = v/a and T = L/v + t_c, and where L < v^2/a it
-//! is a triangle, t_c = sqrt(L/a), T = 2 t_c.
+//! Given T and a, t_c = T/2 - sqrt(T^2/4 - L/a) (eq. 4.6), here (L/a) / (T/2 + sqrt(T^2/4 - L/a)), without cancellation. Given T
+//! and v, t_c = T - L/v (eq. 4.10). Given limits of v and a, the shortest trapezoid has t_c = v/a and T = L/v + t_c. Where L <
+//! v^2/a it is a triangle, t_c = sqrt(L/a), T = 2 t_c.
 //!
 //! Polynomials are taken from the nearer end, with y = 1 - x: s = 1 - y^2 (3 - 2 y) and 1 - y^3 (10 - 15 y + 6 y^2) beyond the middle.
 
