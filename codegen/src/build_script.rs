@@ -1,4 +1,4 @@
-//! The face for a build script: from a description beside the crate to Rust in `OUT_DIR`.
+//! Interface for build scripts: from a description in the crate to Rust in `OUT_DIR`.
 //!
 //! ```no_run
 //! // build.rs
@@ -129,8 +129,9 @@ impl Robot {
         self
     }
 
-    /// Fuses a multiplication with the addition that alone takes its product, as `Real::mul_add`, which rounds once: the module then needs `std`,
-    /// and a processor that has the operation (`-C target-feature=+fma`, `-C target-cpu=native`), or each becomes a call many times as slow.
+    /// Fuses a multiplication with an addition that is the only user of its product, as `Real::mul_add`, which rounds once. The
+    /// module then needs `std` and a processor with the operation (`-C target-feature=+fma`, `-C target-cpu=native`). Without
+    /// such a processor each becomes a much slower call.
     #[must_use]
     pub fn fused_multiply_add(mut self) -> Robot {
         self.options.fuse = true;
@@ -152,16 +153,18 @@ impl Robot {
         self
     }
 
-    /// Writes the face for C too: `robot.h`, and `robot_c.rs` to be included beside the module in a static or dynamic library.
+    /// Also writes the interface for C: `robot.h`, and `robot_c.rs` to be included next to the module in a static or dynamic
+    /// library.
     #[must_use]
     pub fn c_abi(mut self) -> Robot {
         self.c_abi = true;
         self
     }
 
-    /// Writes `robot_ik.rs` too: all joint variables that reach a pose. It goes into a module of its own, `robot_ik` beside the module that
-    /// takes in `robot.rs` and `robot_runtime.rs`: there the implementation of the runtime's trait `InverseKinematics` looks for it.
-    /// For an arm without a construction it says why in a comment and holds nothing else, and the trait is not implemented.
+    /// Also writes `robot_ik.rs`: all joint variables that reach a pose. Include it in a module `robot_ik`, next to the module
+    /// that includes `robot.rs` and `robot_runtime.rs`. The implementation of the runtime's trait `InverseKinematics` uses this
+    /// path. For an arm without a closed-form construction the file only holds a comment with the reason, and the trait is not
+    /// implemented.
     #[must_use]
     pub fn inverse_kinematics(mut self) -> Robot {
         self.inverse_kinematics = true;

@@ -80,8 +80,8 @@ fn check(manipulator: &Manipulator, places: &Places, diagnostics: &mut Diagnosti
 /// Most names that are reported as nonlinear.
 const REPORTED_NAMES: usize = 50;
 
-/// Pairs of listed names, equal ones included, by which the second derivative of tau is not zero: for each name the first from itself
-/// on, as long as they are not very many.
+/// Pairs of listed names, equal ones included, for which the second derivative of tau is not zero: for each name the first from
+/// itself on. At most `REPORTED_NAMES` pairs.
 fn nonlinear_pairs(manipulator: &Manipulator, field: &Field) -> Vec<(ParameterId, ParameterId)> {
     let RegressorChoice::Names(names) = &manipulator.regressor else { return Vec::new() };
     let vector = ParameterVector::named(manipulator, names);
@@ -179,7 +179,7 @@ fn nonlinear(
     if let Some(other) = other.filter(|other| *other != parameter).and_then(listed) {
         diagnostic = diagnostic.also(other, "listed with it");
     }
-    // The most telling use: a geometric one, if there is one.
+    // Prefer a geometric use, which explains most.
     let geometric =
         |role: Role| matches!(role, Role::Length | Role::CentreOfMass | Role::Gravity | Role::Ratio | Role::RotorPosition);
     let uses = places.uses.get(parameter.0 as usize).map_or(&[][..], Vec::as_slice);
@@ -217,7 +217,7 @@ fn singular_inertia(manipulator: &Manipulator, places: &Places, joint: usize) ->
     )
 }
 
-/// A number that the equations of the arm hold is beyond the range of the scalar, though those of the file are not.
+/// A number in the equations of the arm is beyond the range of the scalar, although all numbers of the file are within it.
 pub fn product_out_of_range(places: &Places, scalar: Scalar, value: &Number) -> Diagnostic {
     let (name, size) = match scalar {
         Scalar::F64 => ("f64", value.to_f64()),

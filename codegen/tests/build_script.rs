@@ -1,4 +1,4 @@
-//! The face for a build script: what it writes, and why it writes nothing.
+//! The interface for build scripts: its output, and its errors.
 //!
 //! One test, since a build script learns its folder from the environment.
 

@@ -129,7 +129,7 @@ fn link(link: Link<'_>) -> String {
     }
 }
 
-/// A comment of JSDoc, tags behind it.
+/// A comment of JSDoc, followed by tags.
 fn comment(blocks: &[Block], tags: &[String]) -> String {
     let mut lines = documentation::plain(blocks, &link);
     if !tags.is_empty() {

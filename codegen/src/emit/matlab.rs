@@ -84,7 +84,7 @@ fn contents(module: &Module, head: &str) -> File {
     File { name: "Contents.m".into(), text: format!("{}\n{head}", contents_comment(&module.name, &functions)) }
 }
 
-/// What stands first in the file of contents.
+/// First comment of the file of contents.
 pub fn contents_comment(robot: &str, functions: &[(String, &Quantity)]) -> String {
     let mut rows = vec![("model".to_string(), "Names, limits and parameters.".to_string())];
     let title = |quantity: &Quantity| documentation::linked(quantity.documentation.title, &link);
@@ -172,7 +172,7 @@ fn comment(blocks: &[Block], first: &str) -> String {
     documentation::plain(blocks, &link).into_iter().enumerate().map(line).collect()
 }
 
-/// A constant as it is written: what has entries is a column, what has rows a matrix.
+/// A constant as written: entries form a column, rows a matrix.
 fn value_of(value: &Value) -> String {
     match value {
         Value::Text(text) => format!("'{text}'"),
@@ -203,7 +203,7 @@ fn results(quantity: &Quantity) -> Vec<String> {
     quantity.result.iter().map(|part| camel(part.name)).collect()
 }
 
-/// What is said of the function for a block of states.
+/// Documentation of the function for a block of states.
 pub fn block_comment(function: &str) -> String {
     format!("% `{function}` of n states, so few that they stay in the processor's cache; inside, an entry is a column.\n")
 }
@@ -243,7 +243,7 @@ fn file(module: &Module, function: &Function, head: &str, notes: &Notes) -> File
     File { name: format!("{name}.m"), text }
 }
 
-/// The lengths of a part of the result, those of a list of matrices as MATLAB has them.
+/// Lengths of a part of the result; MATLAB puts the index of a list of matrices last.
 fn lengths(module: &Module, part: &ResultPart) -> Vec<usize> {
     let lengths: Vec<usize> = part.lengths.iter().map(|length| length.of(&module.sizes())).collect();
     paged(if lengths.is_empty() { &[1] } else { &lengths })

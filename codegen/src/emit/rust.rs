@@ -48,7 +48,7 @@ pub struct Text {
 }
 
 impl Text {
-    /// Function by function, side by side: what a formatter holds of a text is many times the text.
+    /// Functions are formatted one by one, in parallel: a formatter needs many times the memory of its text.
     pub fn of(module: &Module) -> Text {
         let real = match module.scalar {
             Scalar::F64 => quote!(f64),
@@ -82,7 +82,7 @@ impl Text {
     }
 }
 
-/// What the arm does not have, and why.
+/// Comments on the functions that the module lacks, with the reasons.
 fn absent(module: &Module) -> String {
     let line = |absent: &Absent| format!("// There is no `{}`: {}.\n", absent.function, absent.reason);
     let lines: String = module.absent.iter().map(line).collect();
@@ -93,7 +93,7 @@ fn absent(module: &Module) -> String {
     }
 }
 
-/// The implementation of the runtime's traits for the module, as text for a file beside it.
+/// The implementation of the runtime's traits for the module, as text for a separate file.
 pub fn print_runtime(module: &Module, origin: &Origin) -> String {
     let lacking = runtime::lacking(module);
     let line = |(interface, functions): &(&str, Vec<String>)| {
@@ -216,7 +216,7 @@ fn constants(module: &Module) -> TokenStream {
     }
 }
 
-/// The documentation of a function, as it stands in a module without bounds.
+/// The documentation of a function in a module without error bounds.
 #[doc(hidden)]
 pub fn function_documentation(described: &Described<'_>) -> Vec<String> {
     documentation::lines(&described.blocks(false, None))
@@ -265,7 +265,7 @@ fn base_constants(module: &Module, documented: &[(&'static str, Vec<String>)]) -
     })
 }
 
-/// A function without its documentation, and its parts; whether barriers stand in it.
+/// A function without its documentation, with its parts; and whether it has barriers.
 fn function(module: &Module, function: &Function) -> (String, bool) {
     let (ignored, sines) = (ignored(function), sincos::lines(module, function));
     let (body, first, sizes) = (body::body(module, function), quote!(#ignored #(#sines)*), module.sizes());
@@ -317,8 +317,8 @@ pub(in crate::emit) fn asks_for_sines(module: &Module) -> bool {
     module.functions.iter().flat_map(Function::symbols).any(|symbol| symbol.angle().is_some())
 }
 
-/// Sine and cosine, the sign of a rate, what is left of Stribeck friction and the barrier: what functions call besides their parts and those that
-/// write their results.
+/// Functions that emitted functions call besides their parts and result writers: sine and cosine, the sign of a rate, the share
+/// of Stribeck friction, and the barrier.
 fn private_block(module: &Module, has_barriers: bool) -> TokenStream {
     let sin_cos = asks_for_sines(module).then(|| sincos::functions(module));
     let sign = asks_for_signs(module).then(|| {

@@ -153,7 +153,7 @@ fn points(formula: &str) -> usize {
     width
 }
 
-/// What stands in the braces with which a text begins, and what follows them.
+/// Content of the braces at the beginning of a text, and the rest after them.
 fn group(text: &str) -> (&str, &str) {
     let mut depth = 0usize;
     for (at, c) in text.char_indices() {

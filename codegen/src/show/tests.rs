@@ -1,4 +1,4 @@
-//! What is shown of small arms, in each notation.
+//! Output for small arms, in each notation.
 
 use super::*;
 use crate::catalogue::Absent;

@@ -96,7 +96,7 @@ fn block_of(quantity: &Quantity) -> TokenStream {
     signature::of_parts(quantity, |part| signature::part_type(part, &quote!(Lanes)), |name| quote!(#name))
 }
 
-/// Where the entries of a result stand in a block, in the order of the entries.
+/// Places of the entries of a result in a block, in the order of the entries.
 fn places(quantity: &Quantity, sizes: &Sizes) -> Vec<TokenStream> {
     fn indices(lengths: &[Length], sizes: &Sizes) -> Vec<TokenStream> {
         let Some((outer, inner)) = lengths.split_first() else { return vec![quote!()] };

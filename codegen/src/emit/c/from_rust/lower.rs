@@ -174,7 +174,7 @@ impl<'a, 't> Lower<'a, 't> {
         Ok(variable)
     }
 
-    /// The statements that something writes, and what it gives; they are not written.
+    /// The statements that `write` would emit, without emitting them, and its result.
     pub(super) fn apart<T>(&mut self, write: impl FnOnce(&mut Self) -> Found<T>) -> Found<(String, T)> {
         let outer = std::mem::take(&mut self.text);
         let blocks = self.frames.last().map(|frame| frame.blocks.clone()).unwrap_or_default();
@@ -349,7 +349,7 @@ impl<'a, 't> Lower<'a, 't> {
             return self.compared(binary, *length);
         }
         let left = self.expression(&binary.left)?;
-        // What the right side needs statements for is not run where Rust does not run it either.
+        // Rust evaluates the right side only if the left side does not decide; so its statements run under the same condition.
         let (statements, right) = self.apart(|this| this.expression(&binary.right))?;
         if !statements.is_empty() {
             if matches!(binary.op, And(_) | Or(_)) {

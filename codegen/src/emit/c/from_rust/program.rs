@@ -27,7 +27,7 @@ pub(super) struct Program<'a> {
     pub(super) macros: BTreeMap<usize, &'a syn::Expr>,
 }
 
-/// What the macros of a text stand for, by the addresses of their expressions.
+/// Expansions of the macros of a text, by the addresses of their expressions.
 pub(super) fn expanded(items: &[syn::Item]) -> Result<Vec<(usize, syn::Expr)>, String> {
     struct Expansion(Result<Vec<(usize, syn::Expr)>, String>);
     impl Visit<'_> for Expansion {

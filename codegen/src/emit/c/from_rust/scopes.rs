@@ -7,7 +7,7 @@ use super::translator::{c_name, Found, Translator};
 use super::types::Type;
 use super::values::{Iter, Value, View};
 
-/// What a name stands for.
+/// Meaning of a name.
 #[derive(Clone)]
 pub(super) enum Bound<'a> {
     /// A variable or a place, and whether it may be changed.
@@ -20,18 +20,18 @@ pub(super) enum Bound<'a> {
     Function(String),
 }
 
-/// What is known inside of one function of C.
+/// Scope of a function of C.
 #[derive(Default)]
 pub(super) struct Frame<'a> {
     scopes: Vec<BTreeMap<String, Bound<'a>>>,
     /// The names of variables by the blocks of C.
     pub(super) blocks: Vec<BTreeSet<String>>,
-    /// Of a closure: the fields of what it has captured, and their values where it is made.
+    /// For a closure: the fields of its captures, with their values at its creation.
     pub(super) fields: Vec<(String, String)>,
     captured: BTreeMap<String, Bound<'a>>,
 }
 
-/// What a function of Rust is translated with: lines are written behind each other.
+/// Translates a function of Rust, line after line.
 pub(super) struct Lower<'a, 't> {
     pub(super) tr: &'t mut Translator<'a>,
     pub(super) inferred: &'t Inferred,

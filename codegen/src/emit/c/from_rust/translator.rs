@@ -85,7 +85,7 @@ impl<'a> Translator<'a> {
         Ok(fields.into_iter().map(|(name, ty)| (name, bare.unknowns.settled(&ty))).collect())
     }
 
-    /// What a type is called, as a part of other names.
+    /// Name of a type, as a part of other names.
     fn called(&self, ty: &Type) -> Found<String> {
         let size = |length: &Length| match length {
             Length::Known(size) => Ok(*size),
@@ -253,7 +253,7 @@ pub(super) fn snake(name: &str) -> String {
     text
 }
 
-/// A name that C or C++ has for itself, or that headers of systems have made a macro, with a line behind it.
+/// Appends an underscore to a name that C or C++ reserves, or that system headers define as a macro.
 pub(super) fn c_name(name: &str) -> String {
     const TAKEN: &[&str] = &[
         "double",
