@@ -193,7 +193,7 @@ fn near_singular(times: f64, k_i: f64) -> (Vector4<f64>, OperationalSpace<f64, 4
     (q, operational_space([400.0; 4], [k_i; 4], [40.0; 4]).with_damping(damping))
 }
 
-/// The error along u of the smallest sigma obeys dde + g (K_D de + K_P e + K_I int e) = 0, g = sigma^2 / (sigma^2 + lambda^2): So
+/// The error along u of the smallest sigma obeys dde + g (K_D de + K_P e + K_I int e) = 0, g = sigma^2 / (sigma^2 + lambda^2). So
 /// lambda = 2 sigma leaves a fifth of the gains, and K_I = 16000 / 5 is the limit.
 #[test]
 fn damping_lowers_the_gain_of_the_integral() {

@@ -8,7 +8,7 @@
 //! atom    = number | name | name ( sum ) | ( sum )
 //! ```
 //!
-//! A number is digits with an optional point and exponent, kept as text: what it means exactly is the reader's concern.
+//! A number is digits with an optional point and exponent, kept as text: the caller decides its exact value.
 
 use std::collections::BTreeMap;
 
@@ -17,7 +17,7 @@ use std::collections::BTreeMap;
 pub enum Formula {
     /// A decimal, as its digits stand.
     Number(String),
-    /// A name; `pi` is one.
+    /// A name, such as `pi`.
     Name(String),
     /// A function of one argument: `sin`, `cos`, `sqrt`, ...
     Call(String, Box<Formula>),

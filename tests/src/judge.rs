@@ -20,13 +20,13 @@ use crate::random::{self, Random, State};
 /// How close the judged functions have to come.
 #[derive(Clone, Copy, Debug)]
 pub struct Tolerance {
-    /// Of every function but forward dynamics, by `precision::deviation`.
+    /// Bound for every function except forward dynamics, by `precision::deviation`.
     pub values: f64,
-    /// Of the residual of forward dynamics.
+    /// Bound for the residual of forward dynamics.
     pub residual: f64,
 }
 
-/// A case: who is judged by which description, and where.
+/// A case: the robot, the description that judges it, and the state.
 struct Case<'a> {
     what: String,
     robot: &'a dyn Functions,
@@ -103,7 +103,7 @@ impl Case<'_> {
         self.expect_forward_dynamics("forward_dynamics", model, a.clone());
         self.judge_beyond(&a);
 
-        // The regressor of the file's choice, column by column where the oracle knows the columns; and what it adds up to.
+        // The regressor of the file's choice, column by column where the oracle knows the columns; and the torque Y pi + known.
         let y = robot.call("regressor", &a);
         let known = robot.call("known_torque", &a);
         match self.description.regressor(q, dq, dqr, ddqr) {
@@ -151,7 +151,7 @@ impl Case<'_> {
         }
         assert_eq!(rank(&base_rows), base.len(), "{}: base_regressor has full column rank", self.what);
         if all {
-            // Its columns are combinations of those of the regressor of all base parameters.
+            // Its columns are combinations of the columns of the regressor of all base parameters.
             assert_eq!(rank(&joined_rows), rank(&own_rows), "{}: base_regressor by regressor", self.what);
         }
 
@@ -248,7 +248,7 @@ impl Case<'_> {
         let units = |count: usize| (0..count).map(move |k| (0..count).map(|i| f64::from(u8::from(i == k))).collect::<Vec<f64>>());
         let count = self.robot.parameter_names().len();
         let standards = self.model.standard_parameters().len();
-        // Rows of friction, and below them those of all else; `friction[column][joint]`.
+        // Rows of friction, and below them the remaining rows; `friction[column][joint]`.
         let apart = |y: Matrix, friction: Vec<Vec<f64>>| -> Matrix {
             let friction: Matrix = (0..n).map(|i| friction.iter().map(|column| column[i]).collect()).collect();
             let rest = y.iter().zip(&friction).map(|(y, f)| y.iter().zip(f).map(|(y, f)| y - f).collect()).collect::<Matrix>();
@@ -273,7 +273,7 @@ impl Case<'_> {
     fn judge_parameters(&self) {
         let mut random = Random::new(self.seed ^ 0x0070_6900);
         let nominal = self.robot.nominal();
-        // Of the size of the nominal ones, some of the other sign: the equations are linear in all of them.
+        // Random parameters of nominal size, some with the opposite sign: the equations are linear in all parameters.
         let pi: Vec<f64> = nominal
             .iter()
             .map(|x| match x {

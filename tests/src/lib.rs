@@ -13,7 +13,7 @@
 //! - [`emitted`]: the emitted modules, compiled; [`compiled`]: further ones, compiled on request in a crate of their own;
 //!   [`interpreter`]: programs carried out without a compiler; [`functions`]: any of them;
 //! - [`judge`]: every function of a robot against the oracle at one state;
-//! - [`count`]: the operations that stand in an emitted text;
+//! - [`count`]: the operations in an emitted text;
 //! - [`project`]: projects of strangers, built without network; [`installed`]: compilers and interpreters, where they are there.
 
 #[macro_use]

@@ -51,7 +51,7 @@ impl Project {
         let cargo = std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into());
         let mut command = Command::new(cargo);
         command.args(arguments).arg("--offline").current_dir(&self.folder);
-        // What the cargo that runs this test has set for itself.
+        // Variables that the running cargo has set for itself.
         for (name, _) in std::env::vars_os() {
             let text = name.to_string_lossy();
             if text.starts_with("CARGO_PKG_") || text.starts_with("CARGO_MANIFEST") {

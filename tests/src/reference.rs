@@ -69,7 +69,7 @@ pub fn reference(robot: &str) -> Reference {
 
 /// Text of a description in `robots/`, by its name without the ending.
 ///
-/// Panics where there is none.
+/// Panics where no robot has this name.
 pub fn description(robot: &str) -> String {
     let path = format!("{}/../robots/{robot}.yaml", env!("CARGO_MANIFEST_DIR"));
     std::fs::read_to_string(&path).unwrap_or_else(|error| panic!("robots/{robot}.yaml: {error}"))

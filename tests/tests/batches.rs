@@ -1,4 +1,4 @@
-//! The functions for many states give each state the bits that the function for one state gives it, whatever stands in the other lanes.
+//! The functions for many states return the same bits for a state as the function for one state, whatever the other lanes hold.
 
 /// Compares the functions of one emitted module, for more states than fill whole blocks.
 macro_rules! check {

@@ -62,7 +62,7 @@ fn generate_of(robot: &str, scalar: Scalar, functions: Selection) -> Generated {
     generate(&source, &Options { scalar, functions, ..Options::default() }).0.unwrap()
 }
 
-/// Runs a command; what it printed if it failed, or warned.
+/// Runs a command; panics with its output if it failed or warned.
 #[track_caller]
 fn run(command: &mut Command) {
     let output = command.output().unwrap_or_else(|error| panic!("{command:?}: {error}"));

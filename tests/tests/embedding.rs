@@ -1,5 +1,5 @@
-//! The three ways to a robot in a project of one's own, each tried as a stranger's project: a copied file, the crate `armgen-generated`,
-//! and a build script; and when a build script runs. The snippets of docs/rust.md are tried as they are printed.
+//! Tries the three ways to use a robot in another project: a copied file, the crate `armgen-generated`, and a build script. Also
+//! checks when a build script runs. The snippets of docs/rust.md are compiled as printed.
 
 use std::path::Path;
 
@@ -95,7 +95,7 @@ struct State {
     ddq: [f64; 4],
 }
 
-/// A project that depends on `armgen-generated`, whatever robot stands in robot.yaml; without and with the runtime's traits.
+/// A project that depends on `armgen-generated`, with any robot in robot.yaml, without and with the runtime's traits.
 #[test]
 #[ignore = "wide"]
 fn the_generated_crate_is_a_dependency() {
@@ -193,7 +193,8 @@ fn main() {
     assert_eq!(project.succeed(&["tree", "--edges", "normal", "--prefix", "none"]).matches("armgen-codegen").count(), 0);
 }
 
-/// The crate `generated` with a robot.yaml beside it, in a workspace of its own: when its build script runs, and what a wrong file gets.
+/// The crate `generated` with its robot.yaml in a workspace of its own: when its build script runs, and the error of a wrong
+/// file.
 #[test]
 #[ignore = "wide"]
 fn the_robot_follows_its_file_and_nothing_else() {

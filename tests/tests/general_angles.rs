@@ -1,7 +1,7 @@
 //! Arms whose angles are all general decimals: what their constants take grows with the joints as for right angles.
 //!
-//! Multiplied out, a product of rotations by general angles would double its terms with each of them. What is bounded here are counts:
-//! terms of constants, definitions that they share, the lengths of their texts, operations of the functions.
+//! Multiplied out, a product of rotations by general angles would double its terms with each rotation. The test bounds four
+//! counts: terms of constants, definitions that they share, lengths of their texts, and operations of the functions.
 
 use armgen_codegen::exact::Definitions;
 use armgen_codegen::program::Cost;
@@ -10,7 +10,7 @@ use armgen_codegen::source::Source;
 use armgen_codegen::{validate, Model};
 use armgen_tests::random::chain_with_general_angles;
 
-/// What the constants of an arm's functions take.
+/// Size of the constants of an arm's functions.
 #[derive(Debug)]
 struct Size {
     /// Terms of the longest constant.

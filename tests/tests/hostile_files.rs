@@ -1,5 +1,6 @@
-//! No text makes the reader or the generator panic or hang: every prefix of a valid file, many files with one byte changed, and files
-//! made to cost much: long and deep ones, aliases of long texts, numbers whose exact value grows, sums that multiply out.
+//! No text makes the reader or the generator panic or hang. The texts are every prefix of a valid file, many files with one
+//! changed byte, and expensive files. Expensive files are long or deep, alias long texts, hold numbers whose exact value grows,
+//! or sums that multiply out.
 //!
 //! No clock is asked, for a busy machine says nothing about the program: work is bounded by counts, so that each of these ends.
 
@@ -39,7 +40,7 @@ fn generate(bytes: &[u8]) {
     }
 }
 
-/// Of the files that are changed in so many rounds, those that still describe an arm go through the generator, as many as that.
+/// Changes a file `rounds` times. The first `generated` results that still describe an arm go through the generator.
 fn change(name: &str, seed: u64, rounds: usize, mut generated: usize) {
     let text = robot(name);
     let mut sequence = Sequence(seed);

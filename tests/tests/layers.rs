@@ -4,8 +4,8 @@
 //! followed to where the name is declared. Two rules hold:
 //!
 //! - between the top modules of a crate there are the arrows of [`LAYERS`] and no others;
-//! - at every level, modules beside each other form an order: no two of them depend on each other, directly or through others. A module
-//!   and the files of its folder are one module to those outside of it.
+//! - at every level, sibling modules form an order: no two of them depend on each other, directly or through others. Seen from
+//!   outside, a module and the files of its folder are one module.
 //!
 //! Tests (`#[cfg(test)]`) may name whatever they like.
 
@@ -18,7 +18,7 @@ use syn::visit::Visit;
 /// A module by its path from the root of the crate; the root itself is empty.
 type Module = Vec<String>;
 
-/// What the modules of a crate may name, lowest first: a module may name only modules whose lines stand above its own.
+/// Allowed dependencies of the modules of a crate, lowest first: a module may only name modules listed above it.
 type Layers = &'static [(&'static str, &'static [&'static str])];
 
 /// Exact numbers, expressions, their rewriting; no robot.
@@ -134,7 +134,7 @@ const PAGE: Layers = &[
 const COMMANDS: Layers =
     &[("input", &[]), ("companions", &[]), ("file_names", &[]), ("commands", &["companions", "file_names", "input"])];
 
-/// From a text and a description to a verdict; `docs/certificate.md` says what each step is for.
+/// From a text and a description to a verdict; `docs/certificate.md` explains each step.
 const VERIFY: Layers = &[
     ("check", &[]),
     ("element", &[]),
@@ -306,7 +306,7 @@ const VERIFY: Layers = &[
     ),
 ];
 
-/// What a file says: modules that it declares, names that it brings into scope, paths that it uses.
+/// Contents of a file: modules that it declares, names that it brings into scope, paths that it uses.
 #[derive(Default)]
 struct File {
     children: BTreeSet<String>,
@@ -376,7 +376,7 @@ impl<'ast> Visit<'ast> for File {
         }
     }
 
-    /// What a macro is given are tokens: paths from the root of the crate are found among them.
+    /// The arguments of a macro are tokens; finds paths from the root of the crate among them.
     fn visit_macro(&mut self, item: &'ast syn::Macro) {
         let text = item.tokens.to_string().replace(' ', "");
         for (start, _) in text.match_indices("crate::") {
@@ -532,7 +532,7 @@ fn circle(arrows: &BTreeSet<(String, String)>) -> Option<Vec<String>> {
     }
 }
 
-/// What is wrong with the arrows of a crate: those that no layer allows, those that are allowed and not there, circles.
+/// Faults of the dependencies of a crate: forbidden ones, allowed but unused ones, and cycles.
 fn faults(read: &Crate, layers: Option<Layers>) -> Vec<String> {
     let mut faults = Vec::new();
     if let Some(layers) = layers {
@@ -585,8 +585,8 @@ const CRATES: [(&str, Layers); 9] = [
     ("verify", VERIFY),
 ];
 
-/// Crates whose modules have no layers: those of one file, the judges, and the building blocks of inverse kinematics, which are many files of
-/// one module; `inverse-kinematics/tests/texts.rs` holds those to what each says that it needs.
+/// Crates whose modules have no layers: crates of one file, the judges, and the building blocks of inverse kinematics, which are
+/// many files of one module. `inverse-kinematics/tests/texts.rs` checks the declared needs of these blocks.
 const OTHERS: [&str; 9] =
     ["certify", "cli/run", "cli/terminal", "generated", "inverse-kinematics", "lab", "tests", "tests/calls", "tests/experiments"];
 

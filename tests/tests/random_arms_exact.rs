@@ -108,8 +108,8 @@ fn random_arms_equal_their_equations_and_keep_every_identity_exactly() {
     println!("{arms} arms from seed {first} on: each arm equals its equations and keeps every identity\n{seen}");
 }
 
-/// Arms that were not generated, or not judged right, before the program was mended: constants whose reciprocals grew with every pivot, a
-/// centre of mass on the bisector of two axes, pairs of factors that were shared and taken apart for ever.
+/// Seeds of arms that earlier versions failed to generate, or judged wrong. Constants had reciprocals that grew with every pivot,
+/// a centre of mass lay on the bisector of two axes, or pairs of factors were shared and split for ever.
 #[test]
 fn arms_that_took_a_mend_stay_mended() {
     for seed in [575, 630, 2723, 4951, 5350] {

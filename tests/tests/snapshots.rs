@@ -1,4 +1,4 @@
-//! What is known of each robot at a glance, kept as snapshots: a difference shows whether the form, the cost or the meaning has changed.
+//! Snapshots of each robot: a difference shows whether the form, the cost or the meaning has changed.
 //!
 //! - `ROBOT.cost`: operations of every emitted function, and the derivation that was chosen: the *cost*;
 //! - `ROBOT.meaning`: fingerprints of all entries of every quantity, which no rearrangement changes: the *meaning*;
@@ -80,7 +80,7 @@ fn meanings() {
             for part in quantity.result {
                 let (own, rest) = entries.split_at(part.len(&sizes));
                 entries = rest;
-                // A vector stands in a row.
+                // A vector is printed as a row.
                 let columns = if part.lengths.len() == 1 { part.rows() } else { part.columns() };
                 for row in own.chunks(columns.of(&sizes).max(1)) {
                     let row: Vec<String> = row.iter().map(|&entry| hex(derivation.pool.fingerprint(entry))).collect();

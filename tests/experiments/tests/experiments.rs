@@ -88,7 +88,7 @@ fn a_run_that_ends_for_another_reason_is_not_as_expected() {
     assert!(found.ends_with("the posture to start from does not reach the start of the path"), "{found}");
 }
 
-/// What lies behind the end of a run is not looked at, however long it is and however short the period.
+/// The path beyond the end of a run costs nothing, however long it is and however short the period.
 #[test]
 fn a_via_point_behind_the_end_of_the_run_is_not_met() {
     let arm = armgen_experiment_tests::scara();
@@ -175,7 +175,7 @@ fn what_is_not_as_expected_is_outside() {
     assert_eq!((lines.len(), met), (33, 32));
 }
 
-/// A law gives its torque whatever it is, and every gain that it says that it needs is used.
+/// Every law gives a torque and uses every gain that it requires.
 #[test]
 fn every_law_moves_the_arm() {
     let arm = armgen_experiment_tests::scara();

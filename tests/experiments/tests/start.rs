@@ -17,7 +17,7 @@ fn text(start: &str) -> String {
     head + "expect:\n  - {quantity: eq_quill, peak: [0, 0.1], at_most: 0.1}\n"
 }
 
-/// The tip is where the path is, at once; of two postures that reach it, the one on the side that is asked for.
+/// The tip starts on the path. Two postures reach it; the run takes the one on the requested side.
 #[test]
 fn a_start_from_the_path_is_on_the_path() {
     let arm = armgen_experiment_tests::scara();
@@ -39,7 +39,7 @@ fn a_start_from_the_path_is_on_the_path() {
     assert!((above - 2.065).abs() < 1e-3 && (above + below).abs() < 1e-6, "{above} {below}");
 }
 
-/// The peaks that stand beside the limits are those of the log.
+/// The peaks reported with the limits match the log.
 #[test]
 fn peaks_are_the_largest_of_what_is_logged() {
     let arm = armgen_experiment_tests::scara();

@@ -24,7 +24,7 @@ pub fn check_diagnostics(source: &Source, diagnostics: &Diagnostics) {
     }
 }
 
-/// Imports a text, with every digit and with what the digits mean; what comes out is a description that reads without a fault.
+/// Imports a text, digit by digit and snapped to the meant values; a result must be a valid description.
 ///
 /// # Panics
 /// If not.

@@ -5,8 +5,8 @@ use super::{times, Dual, Matrix, Model};
 use crate::functions::Arguments;
 
 impl Model {
-    /// What a function, plain or `_with` the parameters of this model, must return: row by row, the parts of its result one after the
-    /// other. `None` for functions that are judged in other ways, as regressors and what divides by B are.
+    /// Expected result of a function, plain or `_with` the parameters of this model: row by row, one part after the other. `None`
+    /// for functions that are judged in other ways, such as regressors and functions that divide by B.
     pub fn value(&self, function: &str, a: &Arguments) -> Option<Vec<f64>> {
         let Arguments { q, dq, ddq, .. } = a;
         Some(match function.trim_end_matches("_with") {

@@ -131,7 +131,7 @@ fn root(x: &Exact) -> Result<Exact, String> {
 
 type Pair = (Exact, Exact);
 
-/// Sine and cosine of a + b from those of a and of b.
+/// Sine and cosine of a + b, by the addition theorem.
 fn sum((sa, ca): &Pair, (sb, cb): &Pair) -> Pair {
     (&(sa * cb) + &(ca * sb), &(ca * cb) - &(sa * sb))
 }

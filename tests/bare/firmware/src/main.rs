@@ -1,4 +1,5 @@
-//! Runs the controlled SCARA on a Cortex-M4F and prints the torques of each step and what they cost, besides the lines of the library:
+//! Runs the controlled SCARA on a Cortex-M4F. In addition to the lines of the library, prints the torques of each step and their
+//! cost:
 //!
 //! | line | fields |
 //! |---|---|

@@ -1,4 +1,4 @@
-//! What the firmware printed.
+//! Output of the firmware.
 
 use std::collections::BTreeMap;
 
