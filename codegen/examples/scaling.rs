@@ -63,7 +63,7 @@ struct Row {
     operations: Vec<(String, usize)>,
 }
 
-/// The description that an argument stands for.
+/// The description that an argument denotes.
 fn description(what: &str) -> String {
     let kinds = what.trim_end_matches(|c: char| c.is_ascii_digit());
     match (what[kinds.len()..].parse(), kinds) {
@@ -101,7 +101,7 @@ fn measure(what: &str, selection: &Selection, compiled: bool, folder: &Path) -> 
     Row { arm: what.into(), joints, generation, memory_mib: peak_memory(), bytes: text.len(), compilation, operations }
 }
 
-/// The most memory that this process has had, MiB; not a number where the system does not tell.
+/// The most memory that this process has had, MiB; NaN where the system does not report it.
 fn peak_memory() -> f64 {
     let status = std::fs::read_to_string("/proc/self/status").unwrap_or_default();
     let line = status.lines().find_map(|line| line.strip_prefix("VmHWM:"));
@@ -125,7 +125,7 @@ fn compile(path: &Path) -> Option<Duration> {
 const OWN: usize = 11;
 const CHILDREN: usize = 13;
 
-/// CPU time, of the user and of the system, where the system tells; zero otherwise.
+/// CPU time, of the user and of the system, where the system reports it; zero otherwise.
 fn processor_time(place: usize) -> Duration {
     let stat = std::fs::read_to_string("/proc/self/stat").unwrap_or_default();
     let fields: Vec<&str> = stat.rsplit(')').next().unwrap_or_default().split_whitespace().collect();

@@ -101,7 +101,7 @@ impl Robot {
         }
     }
 
-    /// The scalar type behind `Real`; f64 unless chosen.
+    /// The scalar type of `Real`; f64 unless chosen.
     #[must_use]
     pub fn scalar(mut self, scalar: Scalar) -> Robot {
         self.options.scalar = scalar;
@@ -122,7 +122,8 @@ impl Robot {
         self
     }
 
-    /// Adds the modules `lanes` and `batch`: the functions for many states, so many at a time. 8 serve f64 on every present processor, 16 serve f32.
+    /// Adds the modules `lanes` and `batch`: functions for many states, in blocks of this size. 8 serve f64 on every present
+    /// processor, 16 serve f32.
     #[must_use]
     pub fn batch(mut self, lanes: usize) -> Robot {
         self.options.batch = Some(lanes);
@@ -138,15 +139,16 @@ impl Robot {
         self
     }
 
-    /// The functions of the module by their names, `["gravity", "inertia_matrix_with"]`, say; all unless some are chosen. A name that no
-    /// function has ends the build. The traits of the runtime are implemented only if all functions that they need are there.
+    /// The functions of the module by their names, for instance `["gravity", "inertia_matrix_with"]`; all by default. A name that
+    /// no function has ends the build. The traits of the runtime are implemented only if all functions that they need are there.
     #[must_use]
     pub fn functions<S: Into<String>>(mut self, names: impl IntoIterator<Item = S>) -> Robot {
         self.functions = names.into_iter().map(Into::into).collect();
         self
     }
 
-    /// The name of the written files without their ending, where it is not that of the description: for the same robot in two scalars, say.
+    /// The name of the written files without their ending, where it differs from the description's: for instance for the same
+    /// robot in two scalars.
     #[must_use]
     pub fn file_stem(mut self, stem: impl Into<String>) -> Robot {
         self.stem = Some(stem.into());
@@ -178,8 +180,8 @@ impl Robot {
         self
     }
 
-    /// Is silent about kinds of warnings by their names, `["missing-inertia"]`, say, as `allow` in the description is. A name that no warning
-    /// has ends the build.
+    /// Suppresses kinds of warnings by their names, for instance `["missing-inertia"]`, like `allow` in the description. A name
+    /// that no warning has ends the build.
     #[must_use]
     pub fn allow<S: Into<String>>(mut self, kinds: impl IntoIterator<Item = S>) -> Robot {
         self.allow.extend(kinds.into_iter().map(Into::into));
@@ -202,7 +204,7 @@ impl Robot {
         let path = self.description.display();
         // One colon: cargo refuses two where the user's crate declares a Rust older than 1.77.
         println!("cargo:rerun-if-changed={path}");
-        // Reading as a string refuses what is not UTF-8.
+        // Reading as a string refuses text that is not UTF-8.
         let text =
             std::fs::read_to_string(&self.description).map_err(|error| BuildError::Read(self.description.clone(), error))?;
         let source = Source::new(path.to_string(), text);

@@ -1,9 +1,10 @@
 //! The last part of validation: faults of a description that only its equations show.
 //!
-//! - tau is not linear in the names that `regressor` lists together (a length, say, or a mass and its centre of mass both):
-//!   second derivatives of tau.
+//! - tau is not linear in the names that `regressor` lists together (for instance a length, or both a mass and its centre of
+//!   mass): second derivatives of tau.
 //! - No joint moves any row of the task that the file writes: rows of the Jacobian that are identically zero.
-//! - The inertia matrix B(q) is singular for every q (a massless last link without inertia, say): pivots of an elimination.
+//! - The inertia matrix B(q) is singular for every q (for instance a massless last link without inertia): pivots of an
+//!   elimination.
 //!
 //! Each is decided exactly, in the prime field of the expressions' fingerprints.
 
@@ -29,8 +30,8 @@ pub use armgen_description::validate::{
     NominalValues, Occurrence, Places, Role, MAX_PARAMETERS,
 };
 
-/// The arm that `source` describes, with the places of its parts, and all there is to say about the text, in its order.
-/// There is an arm if and only if no diagnostic is an error.
+/// The arm that `source` describes, with the places of its parts, and all diagnostics, in the order of the text. There is an arm
+/// if and only if no diagnostic is an error.
 pub fn read(source: &Source) -> (Option<(Manipulator, Places)>, Diagnostics) {
     read_for(source, Scalar::F64)
 }

@@ -12,8 +12,8 @@
 //!
 //! Text goes in, text comes out; only [`build_script`] touches files and environment.
 //!
-//! A project that has a robot needs [`build_script::Robot`], or [`generate`] with [`Options`]. The modules that documentation leaves out hold
-//! the stages themselves; the program and the checker stand on them, and they change as the stages do.
+//! A project that has a robot needs [`build_script::Robot`], or [`generate`] with [`Options`]. The modules hidden from the
+//! documentation hold the stages. The program and the checker use them, and they change with the stages.
 
 pub mod build_script;
 
@@ -36,7 +36,7 @@ pub mod schedule;
 #[doc(hidden)]
 pub mod show;
 
-// The algebra and the description, under the paths of the stages that stand on them.
+// The algebra and the description, under the paths that the stages use.
 #[doc(hidden)]
 pub use armgen_algebra::{exact, ring};
 #[doc(hidden)]
@@ -80,7 +80,7 @@ pub struct Generated {
     pub absent: Vec<Absent>,
     /// The program that all texts print.
     program: Module,
-    /// The module but for what notes are written into.
+    /// The module without the parts that receive notes.
     text: emit::rust::Text,
     origin: Origin,
     notes: Notes,
@@ -157,13 +157,13 @@ impl Generated {
         emit::c::print_inverse_kinematics(&self.program, self.construction(), &self.origin)
     }
 
-    /// Inverse kinematics in C alone, `robot_ik.h`: the calls of the header of `inverse_kinematics_for_c`, with their bodies. For an arm that
-    /// has no construction it holds a comment that says why. An error is a fault of this program.
+    /// Inverse kinematics in C alone, `robot_ik.h`: the calls of the header of `inverse_kinematics_for_c`, with their bodies. For
+    /// an arm without a construction it holds a comment with the reason. An error is a fault of this program.
     pub fn inverse_kinematics_in_c(&self) -> Result<String, String> {
         emit::c::print_solver(&self.manipulator, self.program.scalar, self.construction(), &self.origin)
     }
 
-    /// What follows in `robot_test.rs`: the tests of inverse kinematics, whose module is in `file` beside.
+    /// The end of `robot_test.rs`: the tests of inverse kinematics, whose module is in `file` of the same folder.
     pub fn inverse_kinematics_test(&self, file: &str) -> String {
         emit::rust::print_inverse_kinematics_test(&self.program, self.construction(), file)
     }
@@ -189,7 +189,7 @@ pub fn programs(model: &Model, places: &Places, options: &Options) -> Result<Mod
     }
 }
 
-/// From text to text: the module if the description is valid, and all there is to say about the description.
+/// From text to text: the module if the description is valid, and all diagnostics of the description.
 pub fn generate(source: &Source, options: &Options) -> (Option<Generated>, Diagnostics) {
     let (valid, mut diagnostics) = validate::read_for(source, options.scalar);
     let Some((manipulator, places)) = valid else { return (None, diagnostics) };

@@ -77,7 +77,7 @@ pub enum Form {
 pub struct Style {
     /// Which form.
     pub form: Form,
-    /// Constants as decimals of so many digits, 1 to 17; none: exactly.
+    /// Constants as decimals with this many digits, 1 to 17; `None` for exact constants.
     pub digits: Option<u8>,
 }
 

@@ -67,7 +67,7 @@ fn an_angle_has_the_same_sine_beside_any_others() {
     }
 }
 
-/// By itself, without its cosine or its sine, and beside others: the same bits.
+/// An angle has the same bits by itself, without its cosine or its sine, and together with others.
 #[test]
 fn an_angle_has_the_same_sine_however_it_is_asked_for() {
     let special = [0.0, emitted::f64::RANGE, 1e9, 1e300];
@@ -161,7 +161,7 @@ fn zeros_keep_their_sign_and_the_smallest_numbers_their_bits() {
     }
 }
 
-/// Every so many f32 up to the largest; the example `sine_errors` takes every one.
+/// Samples f32 in fixed steps up to the largest; the example `sine_errors` takes every one.
 #[test]
 fn sines_in_f32_are_within_an_ulp_for_every_size_of_angle() {
     const STEP: usize = 100_003;

@@ -1,4 +1,4 @@
-//! Slips that are made in describing an arm, each made once in an arm without a fault, and whether what is said names the reason.
+//! Typical mistakes in the description of an arm, each made once in an arm without a fault: does the diagnostic name the reason?
 //!
 //! A slip replaces a text of the file by another. All words of its last column must occur in the first diagnostic, help included.
 //! A slip that cannot be detected has no words; it is listed so that it is counted.

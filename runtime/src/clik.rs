@@ -76,11 +76,11 @@ messages! { ClikError,
 pub enum Outcome {
     /// Every error is within its tolerance.
     Converged,
-    /// The error is above its tolerance, and the law is at work.
+    /// The error is above its tolerance, and the law is active.
     Tracking,
     /// A rate limit slowed the motion down, along its direction.
     RateLimited,
-    /// Near a singularity: rates are damped, and the error closes more slowly than its gain says.
+    /// Near a singularity: rates are damped, and the error closes more slowly than by its gain.
     Damped,
     /// Near a singularity, where the remaining error, weighted by K, points in a direction in which the arm cannot move. After a
     /// single step the goal may still be reachable, for instance inwards along a stretched arm. After an

@@ -15,11 +15,11 @@
 //! passes the model, the reference and the measurement of each sample. Only [`Adaptive`] and [`OperationalSpace`] have a controller state,
 //! advanced by forward Euler after the torque is computed.
 //!
-//! Each has a method `torque`; the trait [`Controller`] is what they have in common, for a loop that runs any of them.
+//! Each has a method `torque`; the trait [`Controller`] is their common interface, for a loop that runs any of them.
 //!
 //! A measurement that is not finite gives [`ControlError::MeasurementNotFinite`], never a torque, and leaves the controller state as it was.
 //!
-//! The robot is whatever implements the traits: `Nominal` of an emitted module, say.
+//! The robot is any type that implements the traits, such as `Nominal` of an emitted module.
 //!
 //! ```
 //! use armgen_runtime::control::{ControlError, InverseDynamics, TorqueLimits};

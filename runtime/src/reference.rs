@@ -86,7 +86,7 @@ impl<T: RealField + Copy, const N: usize> JointReference<T, N> {
     }
 }
 
-/// Joint variables and rates: the state of an arm, or what is measured of it.
+/// Joint variables and rates: the state of an arm, or its measurement.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct State<T, const N: usize> {
     /// Joint variables, rad or m.

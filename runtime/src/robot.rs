@@ -130,7 +130,8 @@ pub trait Regressor<const N: usize, const P: usize>: Dynamics<N> {
         ddqr: &SVector<Self::Real, N>,
     ) -> SMatrix<Self::Real, N, P>;
 
-    /// The torque of what is not among the parameters, N m or N: tau_known of the equation above, without `load_friction`.
+    /// The torque of all terms outside the parameter vector, N m or N: tau_known of the equation above, without
+    /// `load_friction`.
     fn known_torque(
         &self,
         q: &SVector<Self::Real, N>,

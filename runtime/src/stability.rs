@@ -1,7 +1,7 @@
 //! Stability of the sampled loop, before anything moves.
 //!
-//! A proof in continuous time says nothing about a controller that runs once a millisecond. At rest at a posture, plant and controller
-//! are linear for small deviations x = (δq, δv) of joint variables and rates:
+//! A proof in continuous time proves nothing about a controller that runs once a millisecond. At rest at a posture, plant and
+//! controller are linear for small deviations x = (δq, δv) of joint variables and rates:
 //!
 //! ```text
 //! plant        dx/dt = A x + B u,   A = [[0, I], [-B^-1 dg/dq, -B^-1 F_v]],   B = [0; B^-1]
@@ -21,7 +21,8 @@
 //! This proves that small deviations from rest die away at these postures. It proves nothing about a motion, in which Y(q, dq,
 //! dq_r, ddq_r) excites more than rest does, nor about a start far from the true parameters. A [`MotionAnalysis`] examines these.
 //!
-//! [`SampledLoop`] is one posture; [`analyse`] is a path at rest; [`MotionAnalysis::of`] is the motion. A run says all of it first.
+//! [`SampledLoop`] is one posture; [`analyse`] is a path at rest; [`MotionAnalysis::of`] is the motion. A run reports all of them
+//! first.
 //!
 //! ```
 //! use armgen_runtime::control::PdGravity;

@@ -178,7 +178,8 @@ fn adaptive_b() {
     below("largest joint error in [5, 20] s", worst(&reference, &samples).max(), 5e-7);
 }
 
-/// It is not linear in the parameters, so the model gives it as it is: without it a slide that is braked by more than K_D sigma stands.
+/// The friction is not linear in the parameters, so the law takes it from the model. Without it a slide that is braked by more
+/// than K_D sigma does not move.
 #[test]
 fn friction_that_grows_with_the_load_is_compensated() {
     let braked = |arm: Scara<f64>| Scara { load: 0.25, ..arm };

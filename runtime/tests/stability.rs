@@ -183,7 +183,7 @@ fn linearisations_are_derivatives_of_the_torque() {
     linearised_at(q, &damped, |x| damped.clone().torque(&model, &pose, x).unwrap().tau);
 }
 
-/// A posture with the elbow nearly stretched, and a law that damps there: lambda is so many times the smallest singular value.
+/// A posture with the elbow nearly stretched, and a law that damps there: lambda is `times` the smallest singular value.
 fn near_singular(times: f64, k_i: f64) -> (Vector4<f64>, OperationalSpace<f64, 4, 4>) {
     let q = vector![0.3, 0.1, 0.2, 0.4];
     let j = ghost::task().jacobian(&ghost::nominal().geometric_jacobian(&q));
@@ -214,7 +214,7 @@ fn damping_lowers_the_gain_of_the_integral() {
     assert_eq!(loaded.without_rest, Some(0));
 }
 
-/// Where the simulated arm comes to rest, and how its error fades there, against what the analysis says.
+/// Compares the rest of the simulated arm, and the decay of its error there, with the analysis.
 #[test]
 fn an_operational_law_rests_where_it_is_said_to() {
     fn rest<const M: usize>(what: &str, reference: Vector4<f64>, mut law: OperationalSpace<f64, 4, M>) -> f64 {
@@ -233,7 +233,7 @@ fn an_operational_law_rests_where_it_is_said_to() {
         let report = analyse(&plant, &model, &law, &[reference], 1e-3, Delay::NONE).unwrap();
         close(what, report.offset, moved, 1e-15);
         assert!(report.is_stable(), "{report:?}");
-        // About that posture the torque is what the feedback says.
+        // About that posture the torque follows the feedback.
         let torque = |x: &State<f64, 4>| law.clone().torque(&model, &pose, x).unwrap().tau;
         let h = 1e-6;
         for i in 0..4 {

@@ -21,7 +21,7 @@ use super::{Notes, Origin};
 use crate::catalogue::Quantity;
 use crate::program::Module;
 
-/// The two texts of the C face.
+/// The two texts of the C interface.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct CFace {
     /// The header: `robot.h` for a module in `robot.rs`.
@@ -30,7 +30,7 @@ pub struct CFace {
     pub wrappers: String,
 }
 
-/// The C face of a module.
+/// The C interface of a module.
 pub fn print(module: &Module, origin: &Origin) -> CFace {
     CFace { header: header::header(module, origin), wrappers: bindings::wrappers(module, origin) }
 }

@@ -14,7 +14,7 @@ pub(super) enum Block {
     Text(Vec<String>),
     /// A formula, with links.
     Formula(&'static str),
-    /// Lines as they stand.
+    /// Lines, verbatim.
     Verbatim(Vec<String>),
     /// Items, with links.
     List(Vec<String>),

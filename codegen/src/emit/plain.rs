@@ -9,7 +9,7 @@ use crate::program::listing::{angles, Angle, Expression, Name};
 use crate::program::{Function, Joint, Module, Operation};
 use crate::ring::Symbol;
 
-/// How a language writes what a line is made of.
+/// How a language writes the elements of a line.
 pub(super) trait Syntax {
     /// A constant, with its sign.
     fn number(&self, value: &Number) -> String;

@@ -39,7 +39,7 @@ pub fn print(module: &Module, origin: &Origin, notes: &Notes) -> String {
     Text::of(module).documented(module, origin, notes)
 }
 
-/// The text of a module, but for what notes are written into: its head and the documentation of its functions.
+/// The text of a module without the parts that receive notes: its head and the documentation of its functions.
 #[derive(Clone, Debug)]
 pub struct Text {
     before: String,
@@ -104,7 +104,7 @@ pub fn print_runtime(module: &Module, origin: &Origin) -> String {
     head(origin, &[]) + &notes + &runtime::implementation(module).map_or_else(String::new, format)
 }
 
-/// The comment that says where a file came from, and notes below it.
+/// The comment with the origin of a file, and notes below it.
 pub(in crate::emit) fn head(origin: &Origin, notes: &[String]) -> String {
     crate::emit::head::lines(origin, notes)
         .iter()

@@ -15,7 +15,7 @@ use crate::catalogue::Argument;
 use crate::exact::Number;
 use crate::ring::{AngleSum, Symbol};
 
-/// Steps with one use are written inside the step that uses them, up to so many operands in a line.
+/// Steps with one use are inlined into the step that uses them, up to this many operands in a line.
 const OPERANDS_IN_A_LINE: usize = 6;
 
 /// A body of more lines than this is taken apart.
@@ -50,7 +50,7 @@ pub enum Expression {
     Operation(Operation, Box<Expression>, Box<Expression>),
     /// The product of the first two and the third, added to it in one operation that rounds once.
     Fused(Box<[Expression; 3]>),
-    /// The sign of what is inside.
+    /// The sign of the inner expression.
     Sign(Box<Expression>),
     /// The inner expression, negated.
     Negation(Box<Expression>),
@@ -146,7 +146,7 @@ impl Name {
     }
 }
 
-/// As many characters of a name C and MATLAB tell from others.
+/// C and MATLAB distinguish names by this many characters.
 const LONGEST_NAME: usize = 63;
 
 /// The joints of a sum, counted from 1; as sets of bits where a name of them would be too long: of 24 joints and more.
@@ -435,7 +435,7 @@ impl Listing {
         if self.lines.len() <= LONG {
             return Vec::new();
         }
-        // Where each name is used last: beyond the last part for what the result needs.
+        // The part that uses each name last; names that the result needs last beyond every part.
         let values = |chunk: &[Line]| names(chunk.iter().map(|line| &line.value));
         let mut last_use: BTreeMap<Name, usize> = BTreeMap::new();
         for (part, chunk) in self.lines.chunks(PART).enumerate() {

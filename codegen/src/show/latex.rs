@@ -17,10 +17,10 @@ const WIDTH: usize = 330;
 /// Indentation of the second and later lines of a formula, pt.
 const INDENT: usize = 14;
 
-/// A `bmatrix` of amsmath has at most so many columns.
+/// A `bmatrix` of amsmath has at most this many columns.
 const MATRIX_COLUMNS: usize = 10;
 
-/// An aligned block holds so many lines: it cannot be broken between pages.
+/// An aligned block holds at most this many lines: it cannot be broken between pages.
 const LINES: usize = 24;
 
 impl Sheet {

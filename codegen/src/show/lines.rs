@@ -90,7 +90,7 @@ fn breaks(formula: &str, mut depth: usize, notation: Notation) -> Vec<Break> {
             Notation::Text => c == '*' || c == '/',
             Notation::Latex => rest.starts_with("\\,"),
         };
-        // A part begins with what it was broken before.
+        // A break comes before a sign or factor, which begins the next part.
         if at > 0 && braces == 0 && (sign || factor) {
             found.push(Break { at, depth, level: 2 * depth + usize::from(factor) });
         }

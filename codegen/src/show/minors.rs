@@ -1,4 +1,4 @@
-//! The minors of a task Jacobian with one column more than rows: the factors that they share, then what is left of each, equal ones once.
+//! The minors of a task Jacobian with one column more than rows: their common factors, then the rest of each, equal ones once.
 //!
 //! ```text
 //! D_k = f_1 f_2 ... d_k
@@ -41,7 +41,7 @@ pub(super) fn formula(product: &Product, printer: &Printer<'_>) -> String {
 pub(super) struct Words {
     /// Introduces the minors, before their common factors, or before the minors if they share none.
     pub(super) head: String,
-    /// Where J loses rank, before what is left of them.
+    /// Where J loses rank; comes before the minors without their common factors.
     pub(super) where_lost: String,
 }
 

@@ -10,7 +10,7 @@ use crate::exact::Number;
 use crate::ring::print::{Notation, Printer};
 use crate::ring::{ExprId, Node};
 
-/// A step that is used once is written inside the one that uses it, up to so many operands.
+/// A step that is used once is inlined into the step that uses it, up to this many operands.
 const OPERANDS_IN_A_STEP: usize = 6;
 
 /// A product: an exact coefficient, and factors as they are printed, with their powers.

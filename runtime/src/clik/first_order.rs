@@ -159,7 +159,8 @@ impl<T: RealField + Copy, O, const M: usize> PseudoInverse<T, O, M> {
 
     /// The same with a damped inverse near singularities, instead of [`ClikError::Singular`] at them.
     ///
-    /// While damping is at work I - J* J is no projector, and dq_0 disturbs the task, by lambda/2 |dq_0| at most, lambda that of [`Damping`].
+    /// While damping is active, I - J* J is no projector, so dq_0 disturbs the task, by at most lambda/2 |dq_0| with the lambda
+    /// of [`Damping`].
     #[must_use]
     pub fn with_damping(self, damping: Damping<T>) -> Self {
         Self { damping: Some(damping), ..self }

@@ -112,7 +112,7 @@ impl<A, T: RealField + Copy, const N: usize, const M: usize> Clik<A, T, N, M> {
         let Limited { value: dq, is_limited: slowed } = self.limits.slow_down(&rates.dq);
         let asked = q + dq * self.period;
         let WithinRange { q: next, stopped } = self.limits.stop(q, &asked);
-        // The rate of a joint that is stopped is what it really did; that of the others stays as it is, to the last bit.
+        // The rate of a stopped joint is its actual rate; the other rates keep every bit.
         let dq = if stopped.is_some() {
             let done = SVector::from_fn(|i, _| if next[i] == asked[i] { dq[i] } else { (next[i] - q[i]) / self.period });
             saturate(&done, self.limits.rate()).value

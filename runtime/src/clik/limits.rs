@@ -67,7 +67,7 @@ impl<T: RealField + Copy, const N: usize> JointLimits<T, N> {
 
     /// `next` kept within the range.
     ///
-    /// A joint that stands outside already, at `q`, may move inwards or stay.
+    /// A joint that is already outside at `q` may move inwards or stay.
     pub fn stop(&self, q: &SVector<T, N>, next: &SVector<T, N>) -> WithinRange<T, N> {
         let Some((lower, upper)) = &self.range else {
             return WithinRange { q: *next, stopped: None };

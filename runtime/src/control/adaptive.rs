@@ -12,8 +12,8 @@
 //! Then the errors vanish, although the estimate need not be right. Where another load makes it differ, dV/dt gains the term
 //! sigma' (F_l^ - F_l): the errors need not vanish, and without a projection the estimate may drift.
 //!
-//! That holds in continuous time. Sampled, the law is unstable where Lambda and K_D are too large for the period, whatever V says: compute
-//! the spectral radius of the sampled loop first (module `stability`).
+//! That holds in continuous time. The sampled law is unstable where Lambda and K_D are too large for the period, whatever V
+//! suggests: compute the spectral radius of the sampled loop first (module `stability`).
 
 use super::{check_joint, issue, ControlError, Torque, TorqueLimits};
 use crate::{
@@ -99,7 +99,7 @@ impl<T: RealField + Copy, const N: usize, const P: usize> Adaptive<T, N, P> {
         self
     }
 
-    /// The same with torques limited; while a limit is at work the estimate rests.
+    /// The same with torques limited; while a limit is active the estimate rests.
     #[must_use]
     pub fn with_torque_limits(self, limits: TorqueLimits<T, N>) -> Self {
         Self { limits: Some(limits), ..self }

@@ -149,7 +149,7 @@ messages! { DampingError,
 pub struct Solution<T, const N: usize> {
     /// The joint vector.
     pub x: SVector<T, N>,
-    /// Whether damping was at work: J x differs from v.
+    /// Whether damping was active: J x differs from v.
     pub damped: bool,
 }
 
@@ -183,7 +183,7 @@ impl<T: RealField + Copy> Damping<T> {
         DampingBelow { threshold }
     }
 
-    /// The threshold w_0 below which damping is at work.
+    /// The threshold w_0 below which damping is active.
     pub fn threshold(&self) -> T {
         self.threshold
     }

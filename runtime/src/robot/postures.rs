@@ -28,8 +28,8 @@ pub struct Posture<T, const N: usize> {
     pub branch: u16,
     /// Two postures meet here.
     pub double: bool,
-    /// Bit i: joint i + 1 has one of many values, which the construction chose: some joints can move while the end effector stays. The null space of
-    /// the Jacobian says which; one that has to move along with these may be without a bit.
+    /// Bit i: the construction chose one of many values for joint i + 1, because some joints can move while the end effector
+    /// stays. The null space of the Jacobian shows which joints; a joint that moves along with them may lack its bit.
     pub free: u32,
 }
 
@@ -42,7 +42,7 @@ pub struct Postures<T, const N: usize, const K: usize> {
     pub miss: T,
     /// How many there are.
     pub count: usize,
-    /// The postures; those from `count` on say nothing.
+    /// The postures; entries from `count` on have no meaning.
     pub all: [Posture<T, N>; K],
 }
 
@@ -90,8 +90,8 @@ pub trait InverseKinematics<const N: usize, const K: usize>: JointRanges<N> {
 /// Inverse kinematics of an arm with one joint more than its task has rows. The argument `redundancy` fixes the free motion: at
 /// most `K` postures reach a pose then, where they are finitely many.
 ///
-/// The redundancy is the variable of a joint, rad or m, or the swivel angle of the elbow about the line from shoulder to wrist, rad; the emitted
-/// module says which. Emitted as [`InverseKinematics`] is.
+/// The redundancy is the variable of a joint, rad or m, or the swivel angle of the elbow about the line from shoulder to wrist,
+/// rad; the emitted module documents which. Emitted as [`InverseKinematics`] is.
 pub trait RedundantInverseKinematics<const N: usize, const K: usize>: JointRanges<N> {
     /// All q with T_e(q) = `pose` and [`redundancy`](RedundantInverseKinematics::redundancy)(q) = `redundancy`; lengths in m. Limits are
     /// not looked at.

@@ -33,7 +33,7 @@ pub struct Energy<T> {
     pub supplied: T,
     /// Work of friction since the start, int F' dq dt with all friction in F, positive where friction brakes.
     pub dissipated: T,
-    /// What does not add up: T + U - (T + U at the start) - supplied + dissipated. Zero but for the error of integration.
+    /// Imbalance of energy: T + U - (T + U at the start) - supplied + dissipated. Zero except for the error of integration.
     pub residual: T,
 }
 

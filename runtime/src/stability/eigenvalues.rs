@@ -20,7 +20,7 @@ pub(super) fn moduli<T: RealField + Copy>(m: DMatrix<T>) -> Option<Vec<T>> {
     let mut h = if n > 2 { Hessenberg::new(m).unpack_h() } else { m };
     let size = h.iter().fold(T::zero(), |sum, x| sum + x.abs());
     let mut steps = 0;
-    // The block low..end is at work; beyond `end` all is found.
+    // low..end is the active block; all eigenvalues beyond `end` are found.
     let mut end = n;
     while end > 0 {
         let last = end - 1;
@@ -178,7 +178,7 @@ mod tests {
 
     #[test]
     fn equal_eigenvalues_under_rounding() {
-        // Four integrals of one rate: c I, but for roundings.
+        // Four integrals of one rate: c I, except for roundings.
         let noise = |i: usize, j: usize| if i == j { 0.999996 } else { (i as f64 - 1.3 * j as f64) * 4e-16 };
         let found = moduli(DMatrix::<f64>::from_fn(4, 4, noise)).unwrap();
         assert!(found.len() == 4 && found.iter().all(|x| (x - 0.999996).abs() < 1e-14), "{found:?}");

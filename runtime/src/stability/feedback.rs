@@ -356,7 +356,7 @@ impl<R: Dynamics<N>, const N: usize, const M: usize> Linearise<R, N> for Operati
 }
 
 impl<T: RealField + Copy, const N: usize, const M: usize> OperationalSpace<T, N, M> {
-    /// J*, the inverse of the law at the Jacobian `j` of its rows: J+, or the damped one where damping is at work.
+    /// J*, the inverse of the law at the Jacobian `j` of its rows: J+, or the damped inverse where damping is active.
     fn inverse(&self, j: &SMatrix<T, M, N>) -> Option<SMatrix<T, N, M>> {
         let Some(damping) = &self.damping else { return Some(RightInverse::new(j)?.matrix()) };
         let mut inverse = SMatrix::<T, N, M>::zeros();

@@ -35,7 +35,7 @@ pub struct Report<T> {
     /// Largest distance of the arm at rest from its reference over all postures and joints, rad or m. Rows or joints without an
     /// integral and the null space cause it. Coulomb friction is not included.
     pub offset: T,
-    /// Index of the first posture near which the arm cannot rest: the gains do not hold what the model leaves out.
+    /// Index of the first posture near which the arm cannot rest: the gains cannot hold the torque that the model leaves out.
     pub without_rest: Option<usize>,
     /// The loop in motion, where it was asked for.
     pub motion: Option<MotionReport<T>>,

@@ -104,7 +104,7 @@ impl<T: RealField + Copy> TimeLaw<T> {
     /// Where the length is zero nothing moves for the duration asked for, whatever the law, and for no time where limits are given.
     ///
     /// # Errors
-    /// Where a number is not finite (a limit of velocity may be infinite), or no such law exists; the fault says why.
+    /// Where a number is not finite (a limit of velocity may be infinite), or no such law exists; the fault gives the reason.
     pub fn resolve(&self, length: T) -> Result<Profile<T>, PlanFault> {
         if !length.is_finite() {
             return Err(PlanFault::NotFinite);
@@ -373,7 +373,7 @@ mod tests {
     fn a_short_acceleration_time_has_all_its_digits() {
         let law = TimeLaw::TrapezoidalByAcceleration { duration: Duration::from_secs(60), acceleration: 100.0 };
         for (length, nanoseconds) in [(0.01f32, 1667), (0.001, 167)] {
-            // t_c = L / (a T) but for a part of t_c / T.
+            // t_c = L / (a T), except for a fraction t_c / T.
             let Shape::Trapezoid { rise_time, .. } = law.resolve(length).unwrap().shape else { panic!() };
             assert_eq!(rise_time, Duration::from_nanos(nanoseconds));
         }

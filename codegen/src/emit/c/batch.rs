@@ -38,7 +38,7 @@ impl Syntax for Lanes<'_> {
     }
 }
 
-/// All functions, so many states at a time.
+/// All functions, for blocks of `lanes` states.
 pub(super) fn print(c: &C<'_>, lanes: usize) -> String {
     let mut text = of_robot(BLOCKS, &c.name, &c.upper).replace("@", &lanes.to_string());
     for function in &c.module.functions {

@@ -18,7 +18,7 @@ use crate::program::{Function, Module};
 
 const BLOCKS: &str = include_str!("batch/blocks.rs");
 
-/// The modules `lanes` and `batch`, of so many lanes.
+/// The modules `lanes` and `batch`, with this many lanes.
 pub(super) fn modules(module: &Module, lanes: usize) -> TokenStream {
     let width = usize_literal(lanes);
     let of_blocks = module.functions.iter().map(|f| of_block(module, f));

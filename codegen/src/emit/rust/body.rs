@@ -21,7 +21,7 @@ const INDENT: &str = "    ";
 /// Characters of a line of formatted text.
 const WIDTH: usize = 89;
 
-/// How Rust writes what a line is made of.
+/// How Rust writes the elements of a line.
 struct Rust(Scalar);
 
 impl Syntax for Rust {

@@ -123,7 +123,7 @@ fn traits(module: &Module, robot: &TokenStream, with_parameters: bool) -> TokenS
             }
         }
     });
-    // With other parameters a function that does not take them would answer for another robot; a regressor has none in it.
+    // With other parameters, a function that does not take them would describe another robot. A regressor is independent of them.
     let answers =
         |quantity: &Quantity| !with_parameters || quantity.has_parameters || quantity.has_length(Length::BaseParameters);
     let single = single().filter(|(quantity, _)| answers(quantity));

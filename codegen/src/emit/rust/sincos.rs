@@ -166,7 +166,7 @@ pub(super) fn lines_of_lanes(module: &Module, function: &Function) -> (Vec<Token
     (before, inside)
 }
 
-/// The private function behind those lines.
+/// The private function that those lines call.
 pub(super) fn of_lanes(module: &Module) -> TokenStream {
     let body = match module.trig {
         Trig::Fast => quote! {

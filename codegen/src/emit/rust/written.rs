@@ -1,4 +1,4 @@
-//! Functions that write their result where the caller says: `NAME_into`, which the function `NAME` calls, and the face for C.
+//! Functions that write their result to a place of the caller: `NAME_into`, which the function `NAME` and the C interface call.
 //!
 //! A compiler gathers the entries of a returned value elsewhere and then copies them. If it sees all entries at once, it combines
 //! entries of several columns in vectors, keeps the steps of all columns live, and spills most of them to the stack. So each
@@ -85,7 +85,7 @@ fn listed(quantity: &Quantity) -> String {
     }
 }
 
-/// The lines of a body, and behind those that a group of entries needs the group itself.
+/// The lines of a body, with each group of entries right after the lines that it needs.
 fn by_groups(quantity: &'static Quantity, body: &Body, sizes: &Sizes) -> Vec<String> {
     let place = |(part, indices): (&ResultPart, Vec<usize>)| {
         part.name.to_string() + &indices.iter().map(|index| format!("[{index}]")).collect::<String>()

@@ -112,7 +112,7 @@ impl<'a> Lower<'a, '_> {
                 let ty = self.ty(ident)?;
                 let mutable = ident.mutability.is_some();
                 match &ty {
-                    // A reference is another name for what it leads to.
+                    // A reference is another name for its target.
                     Type::Reference(to, changes) if !matches!(**to, Type::Slice(_)) => {
                         let value = self.placed(value, &ty, &name)?;
                         self.bind_name(&name, Bound::Value(value, ty.clone(), *changes));
@@ -285,7 +285,7 @@ impl<'a> Lower<'a, '_> {
         View { offset: Some(sum(view.offset.as_deref(), by)), count, ..view.clone() }
     }
 
-    /// The address of a closure that stands as an argument.
+    /// The closure expression of an argument.
     pub(super) fn closure_of(value: &'a syn::Expr) -> Found<&'a syn::ExprClosure> {
         match value {
             Expr::Closure(closure) => Ok(closure),

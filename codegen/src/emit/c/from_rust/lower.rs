@@ -29,7 +29,7 @@ impl<'a, 't> Lower<'a, 't> {
         }
     }
 
-    /// A function, written behind those before it.
+    /// Writes a function after the previous ones.
     pub(super) fn function(
         tr: &'t mut Translator<'a>,
         inferred: &'t Inferred,
@@ -114,7 +114,7 @@ impl<'a, 't> Lower<'a, 't> {
         Ok(())
     }
 
-    /// A closure as a function of its own, with a variable for what it has captured.
+    /// A closure as a function of its own, with a variable for its captures.
     pub(super) fn lifted(&mut self, closure: &'a syn::ExprClosure, hint: &str) -> Found<Bound<'a>> {
         let Type::Closure(id) = *self.inferred.ty(address(closure))? else { return Err("no closure".into()) };
         let signature = self.tr.closures[id].clone();
@@ -147,7 +147,7 @@ impl<'a, 't> Lower<'a, 't> {
         self.inferred.ty(address(node)).cloned()
     }
 
-    /// A value that has a place: a variable with this name, if there is none so far.
+    /// A value with a place: a variable with this name, if it has no place yet.
     pub(super) fn placed(&mut self, value: Value, ty: &Type, hint: &str) -> Found<Value> {
         if value.kind != Kind::Value {
             return Ok(value);
@@ -158,7 +158,7 @@ impl<'a, 't> Lower<'a, 't> {
         Ok(Value::place(variable))
     }
 
-    /// An index that stays what it is while a place is used.
+    /// An index that does not change while a place is used.
     pub(super) fn stable(&mut self, value: &'a syn::Expr) -> Found<String> {
         let found = self.expression(value)?;
         if found.text.bytes().all(|b| b.is_ascii_digit()) || (found.kind == Kind::Value && is_word(&found.text)) {

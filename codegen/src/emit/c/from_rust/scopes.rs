@@ -1,4 +1,4 @@
-//! A function of C while it is written: its lines, and what names stand for, block by block.
+//! A function of C while it is written: its lines, and the meanings of names, block by block.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -13,9 +13,9 @@ pub(super) enum Bound<'a> {
     /// A variable or a place, and whether it may be changed.
     Value(Value, Type, bool),
     View(View),
-    /// An iterator, and the variable that counts what has been taken from it.
+    /// An iterator, and the variable that counts the items taken from it.
     Iterator(Iter<'a>, Option<String>),
-    /// A closure, and a pointer to what it has captured.
+    /// A closure, and a pointer to its captures.
     Closure(usize, Option<String>),
     Function(String),
 }
@@ -81,7 +81,7 @@ impl<'a> Lower<'a, '_> {
         }
     }
 
-    /// Names that are free again behind this.
+    /// Opens a block whose names are free again after it.
     pub(super) fn open_names(&mut self) {
         if let Some(frame) = self.frames.last_mut() {
             frame.blocks.push(BTreeSet::new());

@@ -16,7 +16,7 @@ pub(super) struct Instance {
     pub(super) inputs: Vec<Type>,
 }
 
-/// A closure as a function of C: its name, and the struct of what it has captured, if anything.
+/// A closure as a function of C: its name, and the struct of its captures, if any.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Callable {
     pub(super) function: String,
@@ -220,7 +220,7 @@ impl<'a> Translator<'a> {
         if !has_fields(item) {
             return Ok(format!("\n{said}typedef enum {{\n{variants}\n}} {name};\n"));
         }
-        // Named by itself: C++ looks for what is inside of a struct there alone.
+        // The enum is declared outside of the struct: C++ finds names declared in a struct only in its scope.
         let number = format!("{}_variant_type", name.strip_suffix("_type").unwrap_or(name));
         let mut text = format!("\ntypedef enum {{\n{variants}\n}} {number};\n\n{said}typedef struct {{\n    {number} variant;\n");
         for field in item.variants.iter().flat_map(|variant| &variant.fields) {

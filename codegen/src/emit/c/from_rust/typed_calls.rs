@@ -190,7 +190,7 @@ enum Wanted {
     Callable(Signature),
 }
 
-/// `Fn(A, B) -> C` of an argument's type, behind references.
+/// `Fn(A, B) -> C` of an argument's type, through references.
 pub(super) fn callable_bounds(ty: &syn::Type) -> Option<&syn::ParenthesizedGenericArguments> {
     match ty {
         syn::Type::Reference(to) => callable_bounds(&to.elem),

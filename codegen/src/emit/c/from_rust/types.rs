@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-/// A type; references say whether what they lead to may be changed.
+/// A type; references record whether their target is mutable.
 #[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub(super) enum Type {
     Real,

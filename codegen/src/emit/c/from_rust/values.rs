@@ -1,4 +1,4 @@
-//! Texts of C that stand for values, with what is needed to put them together.
+//! Texts of C for values, with the facts needed to combine them.
 
 use super::types::Type;
 
@@ -149,7 +149,7 @@ pub(super) enum Item {
     Value(Value, Type),
     View(View),
     Tuple(Vec<Item>),
-    /// There is one under a condition.
+    /// An item that exists under a condition.
     Option(String, Box<Item>),
 }
 
