@@ -15,7 +15,7 @@ use std::collections::BTreeMap;
 /// A formula as written.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Formula {
-    /// A decimal, as its digits stand.
+    /// A decimal, as written.
     Number(String),
     /// A name, such as `pi`.
     Name(String),

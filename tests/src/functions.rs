@@ -54,7 +54,7 @@ pub fn expected(absent: &[String], description: &str) -> Vec<String> {
     asked.map(|(quantity, with)| quantity.function_name(with)).filter(|name| !absent.contains(name)).collect()
 }
 
-/// The functions that a module says it does not have, in its head.
+/// The functions that the head of a module lists as missing.
 pub fn absent(text: &str) -> Vec<String> {
     let name = |line: &str| Some(line.strip_prefix("// There is no `")?.split_once('`')?.0.to_owned());
     text.lines().filter_map(name).collect()

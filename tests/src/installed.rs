@@ -23,7 +23,7 @@ pub fn there(program: &str, package: &str) -> bool {
     found
 }
 
-/// Says that something is left out, and why.
+/// Reports a skipped check and its reason.
 ///
 /// # Panics
 ///

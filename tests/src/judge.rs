@@ -46,7 +46,7 @@ pub fn judge(what: &str, robot: &dyn Functions, text: &str, seed: u64, tolerance
     let case = Case { what, robot, description: &description, model, tolerance, seed };
     let mut state = random::state(robot.dof(), seed);
     case.judge_at(&state);
-    // At rest the sign of a rate is 0; a joint that stands still must not be pushed by its Coulomb friction.
+    // At rest the sign of a rate is 0; Coulomb friction must not push a joint at rest.
     for (i, rate) in state.dq.iter_mut().enumerate() {
         if (i as u64 + seed).is_multiple_of(2) {
             *rate = 0.0;
@@ -241,7 +241,8 @@ impl Case<'_> {
         times(&rows, pi).iter().zip(self.robot.call("known_torque", a)).map(|(y, known)| y + known).collect()
     }
 
-    /// Base parameters: as many as the standard regressor has rank where friction is known apart from all else, spanning the same, independent.
+    /// Base parameters are independent, span the same space as the standard regressor, and are as many as its rank, with friction
+    /// separated.
     fn judge_base_columns(&self) {
         let n = self.robot.dof();
         let (mut base, mut standard): (Matrix, Matrix) = Default::default();
@@ -287,7 +288,7 @@ impl Case<'_> {
         }
         self.judge_identities(&a);
 
-        // B has to stay positive for its factors, so all parameters grow alike, but for a little.
+        // B has to stay positive definite for its factors, so all parameters grow by similar factors.
         let pi: Vec<f64> = nominal.iter().map(|x| x * 1.3 * random.real(1.0, 1.0 + NEAR_NOMINAL)).collect();
         let near = Arguments { pi: pi.clone(), ..a };
         match self.model_at(&pi) {
@@ -341,7 +342,7 @@ impl Case<'_> {
             // Rounded to the scale of tau, whatever is subtracted.
             let with_gravity: Vec<f64> = column(&b, n, j).iter().zip(&still).map(|(b, g)| b + g).collect();
             self.check("B_with by Y", &tau(&rest, &rest, &unit(n, j, 1.0)), &with_gravity);
-            // F at some rate, two and three times as much is F_v x + F_3 x³ and what does not depend on x, Stribeck friction having faded there.
+            // At x, 2 x and 3 x Stribeck friction has faded, so F is F_v x + F_3 x³ plus a constant.
             let x = 16.0;
             let [one, two, three] = [1.0, 2.0, 3.0].map(|times| friction(unit(n, j, times * x))[j]);
             let second = (three - two) - (two - one);

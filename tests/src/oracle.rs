@@ -69,7 +69,7 @@ pub struct Joint {
     pub row: [f64; 4],
     /// For rows that are not Denavit-Hartenberg: the link frame at q = 0 in the previous frame, and the unit axis in it.
     pub origin: Option<(Placed, [f64; 3])>,
-    /// The link with what is attached to it, in its own frame.
+    /// The link with its attached bodies, in its own frame.
     pub link: Ten,
     /// The rotor on the previous link.
     pub motor: Option<Motor>,

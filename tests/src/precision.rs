@@ -28,7 +28,7 @@ pub const NEAR_NOMINAL: f64 = 1e-4;
 pub const CHECK_STATE: f64 = 1e-12;
 /// Two formulations inside the oracle, where one differentiates by dual numbers: exact to rounding.
 pub const DUAL: f64 = 1e-12;
-/// Pivots below this part of the largest count as zero in a numerical rank: far above rounding, far below what a motion excites.
+/// Pivots below this part of the largest count as zero in a numerical rank: far above rounding, far below excited directions.
 pub const RANK: f64 = 1e-8;
 
 /// Largest |a - b| over max(1, largest |b|); infinite where the shapes differ or a value is not finite.

@@ -61,7 +61,7 @@ impl Project {
         command.env("CARGO_TARGET_DIR", &self.target).env("CARGO_TERM_COLOR", "never").output().expect("cargo starts")
     }
 
-    /// Runs cargo and wants it to succeed; gives what the program printed.
+    /// Runs cargo, which must succeed; returns the output of the program.
     #[track_caller]
     pub fn succeed(&self, arguments: &[&str]) -> String {
         let output = self.cargo(arguments);
@@ -69,7 +69,7 @@ impl Project {
         text(&output.stdout)
     }
 
-    /// Runs cargo and wants it to fail; gives what it says.
+    /// Runs cargo, which must fail; returns its messages.
     #[track_caller]
     pub fn fail(&self, arguments: &[&str]) -> String {
         let output = self.cargo(arguments);

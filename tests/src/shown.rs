@@ -31,7 +31,7 @@ pub struct Quantity {
     pub columns: usize,
     /// Formulas by rows.
     pub entries: Vec<Vec<String>>,
-    /// `closed`, or `program`: then `entries` stand on `steps`.
+    /// `closed`, or `program`, whose `entries` use `steps`.
     pub form: String,
     /// Numbered steps, name and formula, each using earlier ones only.
     pub steps: Option<Vec<(String, String)>>,

@@ -341,7 +341,7 @@ fn drift(shown: &Shown) -> Result<Vec<String>, String> {
     Ok(entries_differ("geometric_jacobian_dot * dq", &product(&task, &column("dq")), &expected))
 }
 
-/// The potential energy but for a constant: its level is a matter of taste.
+/// The potential energy up to a constant: its zero is arbitrary.
 fn potential(shown: &Shown, reading: Reading) -> Result<Vec<String>, String> {
     let names = if reading == Reading::Nominal { nominal_names() } else { Names::new() };
     let expected = Exact::read_with(POTENTIAL_ENERGY, &names)?;
@@ -352,7 +352,7 @@ fn potential(shown: &Shown, reading: Reading) -> Result<Vec<String>, String> {
     Ok(if left.is_empty() { vec![] } else { vec![format!("potential_energy = {found}, not {expected} and a constant")] })
 }
 
-/// The determinant's factors multiply to it but for a constant, and it vanishes at multiples of pi of q2 only.
+/// The product of the factors is the determinant up to a constant; it vanishes only at multiples of pi of q2.
 fn singularity(shown: &Shown) -> Result<Vec<String>, String> {
     let determinant = shown.get("determinant")?;
     let mut faults = Vec::new();

@@ -42,7 +42,7 @@ impl Exact {
         Self::read_with(text, &Names::new())
     }
 
-    /// Reads a plain formula in which some names stand for expressions.
+    /// Reads a plain formula in which some names denote expressions.
     pub fn read_with(text: &str, names: &Names) -> Result<Self, String> {
         parse::read(text, names).map_err(|error| if error.contains('`') { error } else { format!("{error} in `{text}`") })
     }

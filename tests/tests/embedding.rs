@@ -12,7 +12,7 @@ use armgen_tests::precision::{agree, CHECK_STATE, ORACLE, SINGLE};
 use armgen_tests::project::{modified, workspace, Project};
 use armgen_tests::{reference, technical_project};
 
-/// Where the strangers live. They share what is built for them, so cargo lets one at a time go on.
+/// Folders of the projects. They share a target folder, so cargo builds one at a time.
 fn stranger(name: &str) -> Project {
     Project::new(&Path::new(env!("CARGO_TARGET_TMPDIR")).join("strangers"), name)
 }
@@ -241,7 +241,7 @@ fn the_robot_follows_its_file_and_nothing_else() {
     assert!(modified(&path) > first, "the generator did not run");
     assert!(text(&path) == generate(&edited, Scalar::F64), "the emitted module is not that of the edited robot.yaml");
 
-    // A wrong one fails the build and says where: line and column of the value, and the line itself.
+    // A wrong description fails the build and gives the place: line and column of the value, and the line itself.
     let wrong = scara.replace("    a: 0.5 ", "    a: half ");
     let line = wrong.lines().position(|line| line.contains("half")).expect("the fault") + 1;
     project.write("robot.yaml", &wrong);

@@ -38,8 +38,8 @@ fn size(joints: &str, functions: &[&str]) -> Size {
     }
 }
 
-/// Sizes of twice as many joints each time: at most so many times those before. They grow with about the third power of the joints;
-/// exponential growth would square them.
+/// Sizes as the number of joints doubles: each at most this factor times the one before. They grow with about the third power of
+/// the joints; exponential growth would square them.
 #[track_caller]
 fn check(kind: &str, joints: [usize; 3], functions: &[&str], most: usize) {
     let sizes = joints.map(|n| size(&kind.repeat(n), functions));

@@ -2,7 +2,7 @@
 //! changed byte, and expensive files. Expensive files are long or deep, alias long texts, hold numbers whose exact value grows,
 //! or sums that multiply out.
 //!
-//! No clock is asked, for a busy machine says nothing about the program: work is bounded by counts, so that each of these ends.
+//! Counts, not a clock, bound the work: times on a busy machine prove nothing about the program.
 
 use std::path::Path;
 
@@ -16,7 +16,7 @@ fn robot(name: &str) -> Vec<u8> {
     std::fs::read(Path::new(env!("CARGO_MANIFEST_DIR")).join(name)).expect("a robot")
 }
 
-/// Reads the bytes as a file and renders what is said about them; whether they describe an arm.
+/// Reads the bytes as a file and renders its diagnostics; returns whether they describe an arm.
 fn read(bytes: &[u8]) -> bool {
     let source = Source::new("robot.yaml", String::from_utf8_lossy(bytes));
     let (valid, diagnostics) = validate::read(&source);

@@ -1,4 +1,5 @@
-//! Who may name whom. ARCHITECTURE.md tells the layers of every crate; here they are written out and held against the sources.
+//! Allowed dependencies between modules. ARCHITECTURE.md describes the layers of every crate; this test lists them and compares
+//! them with the sources.
 //!
 //! A file is a module. Every path in it that leads to another module of its crate is an arrow, imports that are handed on (`use`) being
 //! followed to where the name is declared. Two rules hold:
@@ -310,7 +311,7 @@ const VERIFY: Layers = &[
 #[derive(Default)]
 struct File {
     children: BTreeSet<String>,
-    /// Name in this module, and the path that it stands for as written.
+    /// Name in this module, and the path that it denotes, as written.
     imports: BTreeMap<String, Vec<String>>,
     paths: Vec<Vec<String>>,
     /// How deep in modules within the file the visitor is.
@@ -416,7 +417,7 @@ impl Crate {
         Self { files }
     }
 
-    /// The module in which the thing that a path names is declared; none for what is not of this crate.
+    /// The module that declares the item of a path; `None` for items of other crates.
     fn target(&self, from: &Module, path: &[String], depth: usize) -> Option<Module> {
         let (mut at, rest) = match path.first()?.as_str() {
             "crate" => (Module::new(), &path[1..]),
@@ -600,7 +601,7 @@ fn modules_name_those_of_lower_layers_alone() {
     }
 }
 
-/// The crates that a crate and its build script stand on, itself among them.
+/// The dependencies of a crate and its build script, itself included.
 fn tree(package: &str) -> String {
     let cargo = std::process::Command::new(env!("CARGO"))
         .args(["tree", "--offline", "--package", package, "--edges", "normal,build", "--prefix", "none"])
@@ -638,7 +639,8 @@ fn every_crate_of_the_workspace_is_looked_at() {
     assert_eq!(members, looked_at.collect());
 }
 
-/// The printers know no mathematics, and no derivation knows a language: the arrows that must not be there, whatever the table says.
+/// The printers know no mathematics, and no derivation knows a language: these dependencies are forbidden, whatever the table
+/// allows.
 #[test]
 fn what_is_absent_by_design_is_absent() {
     let may = |from: &str, to: &str| CODEGEN.iter().any(|(module, may)| *module == from && may.contains(&to));

@@ -108,7 +108,7 @@ tool: {{xyz: [{a2}, 0, 0]}}
     }
 }
 
-/// Rotors of an arm with crossed axes: where the axis of a rotor stands by default and by choice, in both conventions.
+/// Rotors of an arm with crossed axes: the axis of a rotor by default and by choice, in both conventions.
 #[test]
 fn rotors_turn_about_the_axis_that_the_file_says() {
     let arm = |convention: &str, alphas: [&str; 2], axis: &str| {

@@ -108,7 +108,7 @@ fn a_line_out_of_reach_ends_on_the_circle() {
     assert!(asked < 400 && worst < 1e-13, "{asked} {worst:e}");
 }
 
-/// The same in single precision, to what that can tell.
+/// The same in single precision, to its accuracy.
 #[test]
 fn in_single_precision_too() {
     let start = SVector::from(SCARA.map(|x| x as f32));
@@ -129,7 +129,7 @@ fn a_line_through_the_first_axis_ends_there() {
     let ended = follow(&scara4::Nominal, &path, &start, 50, |_, _| ());
     assert!(matches!(ended.end, Some(BranchEnd::Singular | BranchEnd::Continuum)), "{ended:?}");
     assert!(ended.s <= 0.25 && 0.25 - ended.s < 1.1e-9, "{ended:?}");
-    // Beside the axis it goes on, and the elbow with it.
+    // Off the axis the branch continues, and the elbow with it.
     let path = line(&scara4::Nominal, &start, Vector3::new(-4.0 * position.x, -4.0 * position.y + 0.3, 0.0));
     let beside = follow(&scara4::Nominal, &path, &start, 50, |s, q| {
         assert!((Pose::of(&scara4::Nominal, q).position - path(s).position).amax() < 1e-13);

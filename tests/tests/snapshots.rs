@@ -66,7 +66,7 @@ fn meanings() {
         let model = model(robot);
         let field = &model.field;
         let mut text = format!("in the field of {} elements; the halves of the first value in one, by rows\n", field.prime());
-        // Half the digits tell as much as a reader needs; both halves count, for a small number has an empty one.
+        // Half the digits suffice; both halves enter, because a small number has an empty half.
         let hex = |[first, _]: [Element; 2]| match field.to_u64(first) {
             0 => "0".to_owned(),
             value => format!("{:08x}", (value >> 32) ^ (value & 0xffff_ffff)),

@@ -55,8 +55,8 @@ fn public(items: &[Item]) -> impl Iterator<Item = &ItemFn> {
     })
 }
 
-/// Rust text to be included beside `runtime`, the emitted implementation of the traits, and the text of [`calls`]: `each_method`, which calls
-/// every method of every trait for both robots.
+/// Rust text to be included next to `runtime`, the emitted implementation of the traits, and the text of [`calls`]:
+/// `each_method`, which calls every method of every trait for both robots.
 pub fn method_calls(runtime: &str) -> String {
     let file = syn::parse_file(runtime).expect("an emitted implementation is a Rust file");
     let calls = file.items.iter().filter_map(|item| match item {

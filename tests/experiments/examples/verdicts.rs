@@ -59,7 +59,7 @@ impl<const N: usize> Swing<N> {
     }
 }
 
-/// Whether the loop holds, as it is said and as it is.
+/// Whether the loop is stable, as predicted and as simulated.
 fn judge<P, R, C, const N: usize>(plant: &P, model: &R, controller: C, swing: &Swing<N>, period: f64) -> Found
 where
     P: Dynamics<N, Real = f64>,

@@ -8,7 +8,7 @@ use common::{experiment, folder, text_of};
 
 const START: &str = "start: [-1.3913099976180494, 2.0650786546949544, 0.4, 0.673768657076905]";
 
-/// `adaptive_a.yaml`, a moment of it, begun as this says.
+/// `adaptive_a.yaml`, shortened, with this start.
 fn text(start: &str) -> String {
     let text = text_of(&folder(), "adaptive_a.yaml");
     let (head, _) = text.split_once("expect:").expect("expectations");

@@ -1,4 +1,4 @@
-//! Any text as `robot.yaml`: check it, and generate from what is valid.
+//! Validates any text as `robot.yaml`, and generates from a valid one.
 #![no_main]
 
 use armgen_codegen::{kinds::Scalar, program::Trig, schedule::Options, source::Source, validate};

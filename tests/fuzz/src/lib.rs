@@ -7,8 +7,8 @@ use armgen_codegen::{
 };
 use armgen_import::{import, Options};
 
-/// Checks that what is said about a source can be shown: places inside the text, help that is not empty, a rendering that is there exactly
-/// if there is something to say.
+/// Checks that diagnostics can be shown: places lie inside the text, help is not empty, and a rendering exists exactly if there
+/// are diagnostics.
 ///
 /// # Panics
 /// If not.

@@ -1,6 +1,6 @@
 //! The description, read again: YAML into plain structs of texts, and those into numbers.
 //!
-//! Only what is valid is of interest here; a wrong file gets some error.
+//! Only valid files matter here; a wrong file gets any error.
 
 use std::collections::BTreeMap;
 use std::fmt;
@@ -30,7 +30,7 @@ pub struct Description {
     base: Option<PoseText>,
     tool: Option<PoseText>,
     payload: Option<BodyText>,
-    /// Rows of the task, as listed; none if the file does not say.
+    /// Rows of the task, as listed; empty by default.
     #[serde(default)]
     pub task: Vec<String>,
     regressor: Option<RegressorChoice>,
@@ -341,7 +341,7 @@ impl Numbers {
 }
 
 impl Description {
-    /// Rows of the geometric Jacobian that make up the task: all six if the file does not say.
+    /// Rows of the geometric Jacobian that make up the task: all six by default.
     pub fn task_rows(&self) -> Vec<usize> {
         const ROWS: [&str; 6] = ["x", "y", "z", "rx", "ry", "rz"];
         let listed = self.task.iter().filter_map(|name| ROWS.iter().position(|row| row == name));

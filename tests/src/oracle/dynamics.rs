@@ -374,7 +374,7 @@ pub fn solve(m: &[Vec<f64>], right: &[f64]) -> Option<Vec<f64>> {
 
 /// Numerical rank of a matrix: columns scaled to length one, then Gram-Schmidt with pivoting, up to `precision::RANK`.
 ///
-/// A column shorter than that part of the longest one is rounding (of a sine of pi, say) and counts as zero.
+/// A column below this fraction of the longest column is rounding, for instance of a sine of pi, and counts as zero.
 pub fn rank(rows: &[Vec<f64>]) -> usize {
     let width = rows.first().map_or(0, Vec::len);
     let length = |v: &[f64]| v.iter().map(|x| x * x).sum::<f64>().sqrt();

@@ -54,7 +54,7 @@ impl Model {
         rows
     }
 
-    /// Σ m p / Σ m, the sum on top by the potential energy in a free fall of 1 along each axis in turn.
+    /// Σ m p / Σ m; the numerator is the potential energy under a free fall of 1 along each axis in turn.
     fn center_of_mass(&self, q: &[f64]) -> Vec<f64> {
         let motors = self.joints.iter().filter_map(|joint| joint.motor.as_ref()).map(|motor| motor.mass);
         let mass: f64 = self.joints.iter().map(|joint| joint.link[0]).chain(motors).chain(self.payload.map(|load| load[0])).sum();

@@ -7,7 +7,7 @@
 use super::vector::{add, constant, cross, scale, sub, Frame, Vector};
 use super::{Dual, Matrix, Model, Placed, Scalar};
 
-/// Where an arm stands: link frames and joint axes in the base frame.
+/// Posture of an arm: link frames and joint axes in the base frame.
 pub(super) struct Posture<S> {
     /// Frames 0 (base) to n.
     pub(super) frames: Vec<Frame<S>>,
@@ -29,7 +29,7 @@ impl<S: Scalar> Posture<S> {
             let [a, alpha, d, theta] = joint.row.map(S::from);
             let (d, theta) = if joint.prismatic { (d + q, theta) } else { (d, theta + q) };
             let previous = *frames.last().expect("the base is there");
-            // The rotor of joint 1 rides on the base itself, the row starts from the frame that the file gives.
+            // The rotor of joint 1 is mounted on the base itself; the row starts from the frame that the file gives.
             let previous = if frames.len() == 1 { previous.then(&placed(model.base)) } else { previous };
             if let Some((origin, axis)) = joint.origin {
                 let still = previous.then(&placed(origin));

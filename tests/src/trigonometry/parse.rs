@@ -50,7 +50,7 @@ fn exact(formula: &Formula, names: &Names) -> Result<Exact, String> {
     })
 }
 
-/// The rational number that a decimal says.
+/// The rational number of a decimal.
 fn decimal(digits: &str) -> Result<BigRational, String> {
     let (mantissa, exponent) = digits.split_once(['e', 'E']).unwrap_or((digits, "0"));
     let (whole, fraction) = mantissa.split_once('.').unwrap_or((mantissa, ""));

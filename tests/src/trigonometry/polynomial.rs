@@ -157,7 +157,7 @@ impl Polynomial {
         }
     }
 
-    /// Adds coefficient · monomial, where roots and sines may stand to the second power.
+    /// Adds coefficient · monomial, where roots and sines may have the second power.
     fn add_product(&mut self, mut monomial: Monomial, mut coefficient: BigRational) {
         let mut squares = Vec::new();
         monomial.retain(|atom, power| match atom {

@@ -15,7 +15,7 @@ use core::fmt::Write;
 use core::hint::black_box;
 use panic_halt as _;
 
-/// Every so many steps the stack of a control step is measured at the state of the arm.
+/// Number of steps between two measurements of the stack of a control step at the state of the arm.
 const BETWEEN_MEASUREMENTS: u32 = 100;
 
 #[cortex_m_rt::entry]

@@ -2,10 +2,10 @@
 //! kinematics, and the functions for many states of three robots. It also calls every step of the runtime and every block of
 //! inverse kinematics.
 //!
-//! Its panic handler calls a function that nobody defines. Where the optimiser proves every panic unreachable, the handler is dropped and
-//! the program links; one surviving panic keeps it, and the linker says `undefined reference to a_panic_path_survives`. The program has
-//! neither `std` nor an allocator, so that it links proves their absence too. With the feature `deliberate-index` it must not link.
-//! The script `tests/bare/no-panic` builds it both ways.
+//! Its panic handler calls a function that nobody defines. Where the optimiser proves every panic unreachable, the handler is
+//! dropped and the program links; one surviving panic keeps it, and the linker reports
+//! `undefined reference to a_panic_path_survives`. The program has neither `std` nor an allocator, so linking proves that nothing
+//! needs them. With the feature `deliberate-index` it must not link. The script `tests/bare/no-panic` builds it both ways.
 //!
 //! This is a property of an optimised build (`--release`, a single codegen unit). The `unsafe` here is limited to two attributes.
 //! `main` keeps its name, which nothing else defines, for the C library to start. The declaration of the missing function
