@@ -50,11 +50,11 @@ pub use reach::Reach;
 pub struct PlanError {
     /// Number of the segment (or turn), counted from 1; 0 where the fault is in the start.
     pub segment: usize,
-    /// What is wrong with it.
+    /// The fault.
     pub fault: PlanFault,
 }
 
-/// What is wrong with a segment.
+/// A fault of a segment.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum PlanFault {
     /// A number is infinite or NaN.

@@ -145,7 +145,7 @@ pub fn dormand_prince<T: RealField + Copy, X: Phase<T>>(
             lit(0.2)
         };
         if error <= T::one() && last {
-            // A step cut short by the end of the period says nothing against the longer one.
+            // A step cut short by the end of the period is no reason against the longer step.
             *step = step.max(h * growth);
             return Ok(x);
         }

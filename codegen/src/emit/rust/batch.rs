@@ -18,7 +18,7 @@ use crate::program::{Function, Module};
 
 const BLOCKS: &str = include_str!("batch/blocks.rs");
 
-/// The modules `lanes` and `batch`, of so many lanes.
+/// The modules `lanes` and `batch`, with this many lanes.
 pub(super) fn modules(module: &Module, lanes: usize) -> TokenStream {
     let width = usize_literal(lanes);
     let of_blocks = module.functions.iter().map(|f| of_block(module, f));
@@ -96,7 +96,7 @@ fn block_of(quantity: &Quantity) -> TokenStream {
     signature::of_parts(quantity, |part| signature::part_type(part, &quote!(Lanes)), |name| quote!(#name))
 }
 
-/// Where the entries of a result stand in a block, in the order of the entries.
+/// Places of the entries of a result in a block, in the order of the entries.
 fn places(quantity: &Quantity, sizes: &Sizes) -> Vec<TokenStream> {
     fn indices(lengths: &[Length], sizes: &Sizes) -> Vec<TokenStream> {
         let Some((outer, inner)) = lengths.split_first() else { return vec![quote!()] };

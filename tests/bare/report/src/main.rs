@@ -1,4 +1,4 @@
-//! Holds what the firmware printed against this machine's bits and against the budgets, and writes the page about it.
+//! Compares the output of the firmware with this machine's bits and with the budgets, and writes the page about it.
 //!
 //! ```text
 //! armgen-bare-report BUDGETS.toml CONTROL.elf FIRMWARE.elf PRINTED.txt M4F.elf M4F.txt M7.elf M7.txt [--write PAGE.md TABLE.csv]
