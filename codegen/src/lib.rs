@@ -91,6 +91,11 @@ pub struct Generated {
 }
 
 impl Generated {
+    /// The name of the robot.
+    pub fn name(&self) -> &str {
+        &self.program.name
+    }
+
     /// Prints the module again, with notes in its documentation.
     pub fn annotate(&mut self, notes: &Notes) {
         self.module = self.text.documented(&self.program, &self.origin, notes);
