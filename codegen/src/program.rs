@@ -128,8 +128,8 @@ impl Function {
         uses
     }
 
-    /// Which steps are products that a sum or a difference takes in one fused operation, which rounds once: those that nothing else uses, and of
-    /// two such the left one.
+    /// The products that a sum or a difference fuses into one operation, which rounds once: products without another use, and the
+    /// left one of two.
     pub fn products_in_sums(&self) -> Vec<bool> {
         let mut fused = vec![false; self.steps.len()];
         if !self.fuse {

@@ -5,8 +5,8 @@
 //! unit struct for the robot of the description. `WithParameters` is the same robot with parameters chosen at run time. The
 //! methods take `&self` so that a robot may carry data.
 //!
-//! Frames and signs, for all methods: the base frame is the frame before the description's first row, or before `base` if given;
-//! the end effector is the last link's frame times `tool`. Vectors of Jacobians are expressed in the base frame. The equation of
+//! Frames and signs, for all methods. The base frame is the frame before the description's first row, or before `base` if given.
+//! The end effector is the last link's frame times `tool`. Vectors of Jacobians are expressed in the base frame. The equation of
 //! motion is
 //!
 //! ```text
@@ -77,8 +77,8 @@ pub trait Dynamics<const N: usize>: Kinematics<N> {
     /// Gravity term g(q) = dU/dq, springs included, on the left of the equation of motion; N m or N.
     fn gravity(&self, q: &SVector<Self::Real, N>) -> SVector<Self::Real, N>;
 
-    /// Friction torque, N m or N, at the joints on the left of the equation of motion: viscous and Coulomb friction, which have
-    /// the sign of `dq`, and the other friction of the description.
+    /// Friction torque, N m or N, at the joints on the left of the equation of motion. It sums viscous and Coulomb friction,
+    /// which have the sign of `dq`, and the other friction of the description.
     fn friction(&self, dq: &SVector<Self::Real, N>) -> SVector<Self::Real, N>;
 
     /// Friction torque, N m or N, that grows with the load of its joint, F_l |g_i(q)| sign(dq_i). It adds to

@@ -309,8 +309,8 @@ fn strong_damping_is_not_out_of_reach() {
     }
 }
 
-/// From postures to the poses of others: all are reached where the scalar has the digits, and none is called out of reach where rounding
-/// keeps a small gain from its tolerance.
+/// From postures to the poses of others. All are reached where the scalar has the digits. None is reported out of reach where
+/// rounding keeps a small gain from its tolerance.
 #[test]
 fn no_goal_within_reach_is_called_out_of_reach() {
     fn outcomes<T: nalgebra::RealField + Copy>([k, period, rate, tolerance]: [f64; 4]) -> Vec<Outcome> {

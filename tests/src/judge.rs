@@ -1,7 +1,8 @@
 //! Every function of a robot against the oracle, at one state.
 //!
-//! The plain functions are compared with the oracle's model of the description. The `_with` forms are compared with the oracle's model
-//! at the same parameters, and, because a base parameter is the generator's own choice, by linear identities that need no model:
+//! The plain functions are compared with the oracle's model of the description. The `_with` forms are compared with the oracle's
+//! model at the same parameters, and with linear identities that need no model, because base parameters are the generator's own
+//! choice:
 //!
 //! ```text
 //! tau(pi; dq, dqr, ddqr) = Y pi + tau_known          tau_0 = tau(pi; 0, 0, 0)

@@ -1,5 +1,5 @@
-//! Random arms through the generator: every emitted text equals the equations and keeps every identity, exactly; and some are compiled by
-//! cargo as a user's own crate and judged by the oracle.
+//! Random arms through the generator. Every emitted text exactly equals the equations and keeps every identity. Cargo compiles
+//! some as a user's own crate, which the oracle judges.
 //!
 //! | variable | what | unless given |
 //! |---|---|---:|

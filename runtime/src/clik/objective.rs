@@ -30,8 +30,8 @@ impl<R: Kinematics<N>, const N: usize> Objective<R, N> for NoObjective {
 
 /// The manipulability w of these task rows (the book, eq. 3.56), which need not be those that are followed.
 ///
-/// Where the followed task relaxes a row, take the rows of the *full* task: the w of the relaxed one can grow all the way into a
-/// singularity of the full one.
+/// Where the followed task relaxes a row, take the rows of the *full* task. The w of the relaxed task can grow all the way into a
+/// singularity of the full task.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Manipulability<const K: usize> {
     /// The rows whose manipulability counts.

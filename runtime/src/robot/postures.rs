@@ -10,8 +10,8 @@ pub enum Verdict {
     Complete,
     /// None was found, and none is near.
     Unreachable,
-    /// A change of the pose by its own rounding could change their number; two that have met are listed once, as `double`, and
-    /// two that may have met each as `double`.
+    /// A change of the pose by its own rounding could change their number. Two postures that have met are listed once, as
+    /// `double`; two that may have met are each `double`.
     NearDouble,
     /// Some joints can move while the end effector stays.
     Continuum,
@@ -91,7 +91,7 @@ pub trait InverseKinematics<const N: usize, const K: usize>: JointRanges<N> {
 /// most `K` postures reach a pose then, where they are finitely many.
 ///
 /// The redundancy is the variable of a joint, rad or m, or the swivel angle of the elbow about the line from shoulder to wrist,
-/// rad; the emitted module documents which. Emitted as [`InverseKinematics`] is.
+/// rad. The emitted module documents which. Emitted as [`InverseKinematics`] is.
 pub trait RedundantInverseKinematics<const N: usize, const K: usize>: JointRanges<N> {
     /// All q with T_e(q) = `pose` and [`redundancy`](RedundantInverseKinematics::redundancy)(q) = `redundancy`; lengths in m. Limits are
     /// not looked at.

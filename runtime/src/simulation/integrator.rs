@@ -1,7 +1,7 @@
 //! Integration of ordinary differential equations.
 //!
-//! The classical Runge-Kutta method of fourth order with fixed steps, and the pair of Dormand and Prince (1980) of orders 5 and 4 with
-//! steps chosen from the difference of both.
+//! The classical Runge-Kutta method of fourth order with fixed steps, and the adaptive pair of Dormand and Prince (1980) of
+//! orders 5 and 4. The difference of the pair determines the step.
 
 use crate::linalg::lit;
 use nalgebra::{RealField, SVector};

@@ -1,9 +1,9 @@
 //! The functions once more, for many states at a time.
 //!
-//! `lanes` takes a block: LANES states side by side, `q[joint][lane]`. Each function is one loop over the lanes, whose body is that of the
-//! function for one state. A body so long is never unrolled, reads and writes only neighbouring numbers and branches nowhere, so the compiler does
-//! every step for several lanes in one vector instruction. Values kept as vectors of a type of their own would leave the compiler to find the
-//! vectors again, step by step, in thousands of scalars.
+//! `lanes` takes a block: LANES states side by side, `q[joint][lane]`. Each function is one loop over the lanes, whose body is
+//! that of the function for one state. The compiler never unrolls such a long body. The body has no branches and accesses only
+//! neighbouring numbers, so the compiler does every step for several lanes in one vector instruction. Values kept as vectors of a
+//! type of their own would leave the compiler to find the vectors again, step by step, in thousands of scalars.
 //!
 //! `batch` takes slices of states as the functions for one state know them, and turns them into blocks and back.
 

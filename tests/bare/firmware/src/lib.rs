@@ -1,7 +1,7 @@
 //! Shared by the programs: measure calls by the system timer and by painting the stack, and print over semihosting.
 //!
-//! Under an emulator whose clock advances by the same time for each instruction, differences of the timer count instructions; the lines
-//! `calibration` let the reader of the output check that they do.
+//! An emulator's clock advances by the same time for each instruction, so differences of the timer count instructions. The lines
+//! `calibration` let the reader of the output check this.
 //!
 //! | line | fields |
 //! |---|---|
