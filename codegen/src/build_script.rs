@@ -155,18 +155,16 @@ impl Robot {
         self
     }
 
-    /// Also writes the interface for C: `robot.h`, and `robot_c.rs` to be included next to the module in a static or dynamic
-    /// library.
+    /// Also writes the interface for C: `robot.h`, and `robot_c.rs` to be included next to the module in a static or dynamic library.
     #[must_use]
     pub fn c_abi(mut self) -> Robot {
         self.c_abi = true;
         self
     }
 
-    /// Also writes `robot_ik.rs`: all joint variables that reach a pose. Include it in a module `robot_ik`, next to the module
-    /// that includes `robot.rs` and `robot_runtime.rs`. The implementation of the runtime's trait `InverseKinematics` uses this
-    /// path. For an arm without a closed-form construction the file only holds a comment with the reason, and the trait is not
-    /// implemented.
+    /// Also writes `robot_ik.rs`: all joint variables that reach a pose. Include it in a module `robot_ik`, next to the module that includes
+    /// `robot.rs` and `robot_runtime.rs`. The implementation of the runtime's trait `InverseKinematics` uses this path. For an arm without a
+    /// closed-form construction the file only holds a comment with the reason, and the trait is not implemented.
     #[must_use]
     pub fn inverse_kinematics(mut self) -> Robot {
         self.inverse_kinematics = true;

@@ -3,8 +3,7 @@
 //! - tau is not linear in the names that `regressor` lists together (for instance a length, or both a mass and its centre of
 //!   mass): second derivatives of tau.
 //! - No joint moves any row of the task that the file writes: rows of the Jacobian that are identically zero.
-//! - The inertia matrix B(q) is singular for every q (for instance a massless last link without inertia): pivots of an
-//!   elimination.
+//! - The inertia matrix B(q) is singular for every q (for instance a massless last link without inertia): pivots of an elimination.
 //!
 //! Each is decided exactly, in the prime field of the expressions' fingerprints.
 

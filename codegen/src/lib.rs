@@ -156,8 +156,7 @@ impl Generated {
         self.runtime.clone() + &emit::rust::print_inverse_kinematics_trait(&self.program, self.construction(), ik)
     }
 
-    /// The C interface of `robot_ik.rs`: `robot_ik.h`, and `robot_ik_c.rs` to be included next to it; `None` if the arm has no
-    /// construction.
+    /// The C interface of `robot_ik.rs`: `robot_ik.h`, and `robot_ik_c.rs` to be included next to it; `None` if the arm has no construction.
     pub fn inverse_kinematics_for_c(&self) -> Option<CFace> {
         emit::c::print_inverse_kinematics(&self.program, self.construction(), &self.origin)
     }

@@ -125,8 +125,7 @@ fn the_worst_angles_that_a_search_found_are_within_their_bound() {
     }
 }
 
-/// Fewer angles than lanes all have their sines, with or without the last pairs of lanes and with or without an angle beyond the
-/// range.
+/// Fewer angles than lanes all have their sines, with or without the last pairs of lanes and with or without an angle beyond the range.
 #[test]
 fn fewer_angles_than_lanes_have_their_sines() {
     for third in [0.7, 1e9] {

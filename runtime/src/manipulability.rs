@@ -1,9 +1,8 @@
 //! Manipulability: how well an arm can move, and push, at a posture.
 //!
-//! Joint rates of unit norm give end-effector velocities in the ellipsoid v' (J J')^-1 v = 1. Joint torques of unit norm balance
-//! forces in gamma' (J J') gamma = 1 (the book, Sect. 3.9, eqs. 3.123 and 3.127). With J J' = U diag(sigma^2) U' both have the
-//! axes U. The semi-axes are sigma_i for velocities and 1 / sigma_i for forces: where an arm moves fast it pushes weakly. Their
-//! common measure is
+//! Joint rates of unit norm give end-effector velocities in the ellipsoid v' (J J')^-1 v = 1. Joint torques of unit norm balance forces in
+//! gamma' (J J') gamma = 1 (the book, Sect. 3.9, eqs. 3.123 and 3.127). With J J' = U diag(sigma^2) U' both have the axes U. The semi-axes
+//! are sigma_i for velocities and 1 / sigma_i for forces: where an arm moves fast it pushes weakly. Their common measure is
 //!
 //! ```text
 //! w(q) = sqrt(det(J J')) = prod sigma_i,      dw/dq_i = w tr(J^+ dJ/dq_i)

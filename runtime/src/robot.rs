@@ -5,9 +5,8 @@
 //! unit struct for the robot of the description. `WithParameters` is the same robot with parameters chosen at run time. The
 //! methods take `&self` so that a robot may carry data.
 //!
-//! Frames and signs, for all methods. The base frame is the frame before the description's first row, or before `base` if given.
-//! The end effector is the last link's frame times `tool`. Vectors of Jacobians are expressed in the base frame. The equation of
-//! motion is
+//! Frames and signs, for all methods. The base frame is the frame before the description's first row, or before `base` if given. The end
+//! effector is the last link's frame times `tool`. Vectors of Jacobians are expressed in the base frame. The equation of motion is
 //!
 //! ```text
 //! B(q) ddq + C(q, dq) dq + F(dq) + g(q) = tau                       (the book, Sect. 7.2, eq. 7.42 without contact)
@@ -130,8 +129,7 @@ pub trait Regressor<const N: usize, const P: usize>: Dynamics<N> {
         ddqr: &SVector<Self::Real, N>,
     ) -> SMatrix<Self::Real, N, P>;
 
-    /// The torque of all terms outside the parameter vector, N m or N: tau_known of the equation above, without
-    /// `load_friction`.
+    /// The torque of all terms outside the parameter vector, N m or N: tau_known of the equation above, without `load_friction`.
     fn known_torque(
         &self,
         q: &SVector<Self::Real, N>,

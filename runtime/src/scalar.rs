@@ -1,5 +1,4 @@
-//! Functions computed in the precision of the scalar: f32 in f32 and in integers, so that a processor without f64 does it in
-//! hardware.
+//! Functions computed in the precision of the scalar: f32 in f32 and in integers, so that a processor without f64 does it in hardware.
 //!
 //! `libm` computes f32 sines by way of f64, and so does the standard library with times.
 

@@ -9,10 +9,9 @@
 //! controller   u_k = K x_k + L m_k,   m_{k+1} = m_k + T_s E x_k                (m: integral or estimate, by forward Euler)
 //! ```
 //!
-//! The loop is stable where all eigenvalues of the whole matrix lie within the unit circle; the largest modulus is its spectral
-//! radius. With d samples of delay u_k acts d periods later, and the d torques on their way are a chain of further states.
-//! Combinations of estimated parameters are states only if they are excited at rest: the others are constants, and would add
-//! eigenvalues at 1.
+//! The loop is stable where all eigenvalues of the whole matrix lie within the unit circle; the largest modulus is its spectral radius. With
+//! d samples of delay u_k acts d periods later, and the d torques on their way are a chain of further states. Combinations of estimated
+//! parameters are states only if they are excited at rest: the others are constants, and would add eigenvalues at 1.
 //!
 //! The arm can rest at the posture: estimates equal the plant's parameters, and integrals compensate the model error. A law, or
 //! row, without estimate and integral rests off its reference, where its error compensates the model error ([`LineariseAtRest`],
@@ -21,8 +20,7 @@
 //! This proves that small deviations from rest die away at these postures. It proves nothing about a motion, in which Y(q, dq,
 //! dq_r, ddq_r) excites more than rest does, nor about a start far from the true parameters. A [`MotionAnalysis`] examines these.
 //!
-//! [`SampledLoop`] is one posture; [`analyse`] is a path at rest; [`MotionAnalysis::of`] is the motion. A run reports all of them
-//! first.
+//! [`SampledLoop`] is one posture; [`analyse`] is a path at rest; [`MotionAnalysis::of`] is the motion. A run reports all of them first.
 //!
 //! ```
 //! use armgen_runtime::control::PdGravity;

@@ -277,8 +277,7 @@ fn an_approach_ends_at_a_goal_within_reach_whatever_its_gain() {
     assert_eq!(reached.outcome, Outcome::OutOfReach, "{reached:?}");
 }
 
-/// A goal 0.1 m beyond the stretched arm, under laws that weigh the rows differently: they stop where J' K e = 0, not where J' e
-/// = 0.
+/// A goal 0.1 m beyond the stretched arm, under laws that weigh the rows differently: they stop where J' K e = 0, not where J' e = 0.
 #[test]
 fn unequal_gains_end_out_of_reach_as_well() {
     fn outcome<A: Algorithm<Scara<f64>, 4, 4>>(law: A) -> Outcome {

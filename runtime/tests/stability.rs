@@ -298,8 +298,7 @@ fn a_rest_off_the_reference_is_linearised_there() {
     }
 }
 
-/// If the estimate is frozen, or at its bound, F(Lambda e) + K_D Lambda e carries the load: the quill rests low by 5 g / ((50 +
-/// 25) 500) m.
+/// If the estimate is frozen, or at its bound, F(Lambda e) + K_D Lambda e carries the load: the quill rests low by 5 g / ((50 + 25) 500) m.
 #[test]
 fn an_estimate_that_cannot_come_to_the_truth_rests_off_the_reference() {
     let (plant, model, reference) = (ghost::loaded(), ghost::nominal(), ghost::start());

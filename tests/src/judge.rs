@@ -1,8 +1,7 @@
 //! Every function of a robot against the oracle, at one state.
 //!
-//! The plain functions are compared with the oracle's model of the description. The `_with` forms are compared with the oracle's
-//! model at the same parameters, and with linear identities that need no model, because base parameters are the generator's own
-//! choice:
+//! The plain functions are compared with the oracle's model of the description. The `_with` forms are compared with the oracle's model at the
+//! same parameters, and with linear identities that need no model, because base parameters are the generator's own choice:
 //!
 //! ```text
 //! tau(pi; dq, dqr, ddqr) = Y pi + tau_known          tau_0 = tau(pi; 0, 0, 0)
@@ -242,8 +241,7 @@ impl Case<'_> {
         times(&rows, pi).iter().zip(self.robot.call("known_torque", a)).map(|(y, known)| y + known).collect()
     }
 
-    /// Base parameters are independent, span the same space as the standard regressor, and are as many as its rank, with friction
-    /// separated.
+    /// Base parameters are independent, span the same space as the standard regressor, and are as many as its rank, with friction separated.
     fn judge_base_columns(&self) {
         let n = self.robot.dof();
         let (mut base, mut standard): (Matrix, Matrix) = Default::default();

@@ -1,8 +1,7 @@
 //! A numerical model of an arm, written independently of the generator, whose results must agree.
 //!
-//! Another formulation in other code. It reads the description again, into plain f64. Every vector is expressed in the *base*
-//! frame, and a body is ten numbers about the origin of its frame. Newton-Euler (the book, Sect. 7.5, rotors included) is the
-//! only dynamics:
+//! Another formulation in other code. It reads the description again, into plain f64. Every vector is expressed in the *base* frame, and a
+//! body is ten numbers about the origin of its frame. Newton-Euler (the book, Sect. 7.5, rotors included) is the only dynamics:
 //!
 //! ```text
 //! tau  = NE(q, dq, ddq, g0) + F_v dq + F_c sign(dq)

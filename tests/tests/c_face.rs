@@ -1,5 +1,4 @@
-//! The C interface in a project of its own: a static library of its own without `std`, and a C program that links it and checks
-//! values.
+//! The C interface in a project of its own: a static library of its own without `std`, and a C program that links it and checks values.
 
 use armgen_codegen::emit::Language;
 use armgen_codegen::kinds::Scalar;

@@ -193,8 +193,7 @@ fn main() {
     assert_eq!(project.succeed(&["tree", "--edges", "normal", "--prefix", "none"]).matches("armgen-codegen").count(), 0);
 }
 
-/// The crate `generated` with its robot.yaml in a workspace of its own: when its build script runs, and the error of a wrong
-/// file.
+/// The crate `generated` with its robot.yaml in a workspace of its own: when its build script runs, and the error of a wrong file.
 #[test]
 #[ignore = "wide"]
 fn the_robot_follows_its_file_and_nothing_else() {

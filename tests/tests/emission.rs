@@ -57,8 +57,7 @@ fn the_scara_is_cheap() {
     for (quantity, with) in catalogue::functions() {
         let name = quantity.function_name(with);
         let basic = quantity.interface.is_some_and(|name| ["Kinematics", "Dynamics", "Regressor"].contains(&name));
-        // No basic function except forward dynamics may divide; the SCARA has no friction that grows with the load, which
-        // divides.
+        // No basic function except forward dynamics may divide; the SCARA has no friction that grows with the load, which divides.
         let divides = counted.get(&name).is_some_and(|operations| operations.div > 0);
         assert!(!divides || !basic || name.starts_with("forward_dynamics"), "{name} divides and inverts no B");
     }
@@ -241,8 +240,7 @@ fn an_edit_of_a_mass_reaches_all_that_is_built_on_it() {
         before.iter().filter(|(name, body)| after[*name] != **body).map(|(name, _)| name.trim_end_matches(INTO)).collect();
     let s = random::state(4, 15);
     let a = Arguments { q: s.q.clone(), dq: s.dq.clone(), ddq: s.ddq.clone(), ..Arguments::default() };
-    // Expected changes: functions whose value changes by the oracle, functions without a formula in the oracle, and parameter
-    // values.
+    // Expected changes: functions whose value changes by the oracle, functions without a formula in the oracle, and parameter values.
     let models = [&text, &edited].map(|text| Description::read(text).and_then(|d| d.model()).expect("valid"));
     let depends = |name: &&str| models[0].value(name, &a) != models[1].value(name, &a);
     let mut expected: BTreeSet<&str> = catalogue::quantities().map(|quantity| quantity.name).filter(depends).collect();

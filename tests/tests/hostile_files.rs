@@ -1,6 +1,5 @@
-//! No text makes the reader or the generator panic or hang. The texts are every prefix of a valid file, many files with one
-//! changed byte, and expensive files. Expensive files are long or deep, alias long texts, hold numbers whose exact value grows,
-//! or sums that multiply out.
+//! No text makes the reader or the generator panic or hang. The texts are every prefix of a valid file, many files with one changed byte, and
+//! expensive files. Expensive files are long or deep, alias long texts, hold numbers whose exact value grows, or sums that multiply out.
 //!
 //! Counts, not a clock, bound the work: times on a busy machine prove nothing about the program.
 

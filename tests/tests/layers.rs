@@ -639,8 +639,7 @@ fn every_crate_of_the_workspace_is_looked_at() {
     assert_eq!(members, looked_at.collect());
 }
 
-/// The printers know no mathematics, and no derivation knows a language: these dependencies are forbidden, whatever the table
-/// allows.
+/// The printers know no mathematics, and no derivation knows a language: these dependencies are forbidden, whatever the table allows.
 #[test]
 fn what_is_absent_by_design_is_absent() {
     let may = |from: &str, to: &str| CODEGEN.iter().any(|(module, may)| *module == from && may.contains(&to));

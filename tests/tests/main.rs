@@ -1,5 +1,4 @@
-//! The emitted modules, and the project around them. One program for all tests of the crate: the other files of this folder are
-//! its modules.
+//! The emitted modules, and the project around them. One program for all tests of the crate: the other files of this folder are its modules.
 
 mod bad_files;
 mod batches;

@@ -8,9 +8,8 @@ use crate::exact::Number;
 use crate::parallel::parallel_map;
 
 impl Module {
-    /// The constants of each function by its name: one for each literal in the order of the text, without its sign. So a literal
-    /// is traced to its exact constant even if two constants round to the same float. `NOMINAL_PARAMETERS` holds the nominal
-    /// parameters.
+    /// The constants of each function by its name: one for each literal in the order of the text, without its sign. So a literal is traced to
+    /// its exact constant even if two constants round to the same float. `NOMINAL_PARAMETERS` holds the nominal parameters.
     pub fn constants(&self) -> BTreeMap<String, Vec<Number>> {
         let of_function = |function: &Function| {
             // Angles come first.

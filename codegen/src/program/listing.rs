@@ -195,8 +195,7 @@ impl Function {
             || self.symbols().iter().any(|symbol| matches!(symbol, Symbol::RateSign(_)))
     }
 
-    /// The arguments that its lines use directly, in order; an argument that only enters through its sine or cosine is not among
-    /// them.
+    /// The arguments that its lines use directly, in order; an argument that only enters through its sine or cosine is not among them.
     pub fn used_arguments(&self) -> Vec<Argument> {
         let symbols = self.symbols();
         let used = |a: Argument| symbols.iter().any(|&s| Argument::of(s) == a && s.angle().is_none());

@@ -135,8 +135,7 @@ impl<A, T: RealField + Copy, const N: usize, const M: usize> Clik<A, T, N, M> {
         Ok((Step { q: next, dq, error, outcome }, slowed))
     }
 
-    /// Steps from `start`, rad or m, towards a resting goal. It ends when the goal is reached, the arm rests, or `most_steps` are
-    /// used up.
+    /// Steps from `start`, rad or m, towards a resting goal. It ends when the goal is reached, the arm rests, or `most_steps` are used up.
     ///
     /// The arm rests where two conditions meet. First, a step without an active rate limit changed the error by at most a
     /// millionth of it, or by no more than rounding. Second, a joint limit is in its way, or J' K e = 0: the weighted error

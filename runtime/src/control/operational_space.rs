@@ -15,9 +15,8 @@
 //! only towards zero, and it never leaves its own limit where one is given. Damping keeps the error from closing as well, and the
 //! integral moves on: give it a limit ([`OperationalSpace::with_integral_limit`]) where the arm may stay near a singular posture.
 //!
-//! While damping is active, the direction of the singular value sigma obeys dde + g (K_D de + K_P e + K_I int e) = 0 with g =
-//! sigma^2 / (sigma^2 + lambda^2). With equal gains in all rows it is stable for K_I < g K_P K_D. Without damping K_I < K_P K_D
-//! suffices.
+//! While damping is active, the direction of the singular value sigma obeys dde + g (K_D de + K_P e + K_I int e) = 0 with g = sigma^2 /
+//! (sigma^2 + lambda^2). With equal gains in all rows it is stable for K_I < g K_P K_D. Without damping K_I < K_P K_D suffices.
 
 use super::{check, issue, ControlError, Torque, TorqueLimits};
 use crate::{

@@ -211,8 +211,8 @@ impl<P: Dynamics<N>, R: Dynamics<N, Real = P::Real>, const N: usize> LineariseAt
 }
 
 /// At rest at q, with the reference at the distance e, dq_r = Lambda e and sigma = Lambda e - Lambda δq - δv. The estimate moves
-/// along K_pi^-1 Y_0' with Y_0 = Y(q, 0, 0, 0). Its states are the at most N combinations that Y_0 K_pi^-1 Y_0' = L L' excites, u
-/// = L m, dm/dt = L' sigma. Combinations that only e excites are left out, such as the drifting estimate of viscous friction.
+/// along K_pi^-1 Y_0' with Y_0 = Y(q, 0, 0, 0). Its states are the at most N combinations that Y_0 K_pi^-1 Y_0' = L L' excites,
+/// u = L m, dm/dt = L' sigma. Combinations that only e excites are left out, such as the drifting estimate of viscous friction.
 impl<R: Regressor<N, P>, const N: usize, const P: usize> Linearise<R, N> for Adaptive<R::Real, N, P> {
     fn linearise(&self, model: &R, q: &SVector<R::Real, N>) -> Option<Feedback<R::Real, N>> {
         Some(self.about(model, q, &SVector::zeros()))
@@ -373,9 +373,9 @@ impl<T: RealField + Copy, const N: usize, const M: usize> OperationalSpace<T, N,
         self.null_space.map_or_else(SVector::zeros, |null_space| null_space.gains().0.component_mul(&(reference - q)))
     }
 
-    /// At rest at `q` under `reference`: J+, the errors e of the rows, y_0 of the null space, and a. The equation J* (a - J y_0)
-    /// + y_0 = y, as far as the rows of J can give y, has the solution a = (J J*)^-1 J (y - y_0) + J y_0. `None` where the
-    /// posture is singular.
+    /// At rest at `q` under `reference`: J+, the errors e of the rows, y_0 of the null space, and a. The equation
+    /// J* (a - J y_0) + y_0 = y, as far as the rows of J can give y, has the solution a = (J J*)^-1 J (y - y_0) + J y_0.
+    /// `None` where the posture is singular.
     fn at_rest<R: Dynamics<N, Real = T>>(
         &self,
         model: &R,

@@ -232,8 +232,7 @@ where
     T: RealField + Copy,
     P: Dynamics<N, Real = T>,
 {
-    /// Analyses the motion under `controller`, which uses `model` of the arm; `references` are the controller's own, one a
-    /// sample.
+    /// Analyses the motion under `controller`, which uses `model` of the arm; `references` are the controller's own, one a sample.
     ///
     /// # Errors
     /// [`StabilityError::NoSample`] without a sample, [`StabilityError::Period`] where the period is not positive and finite,

@@ -1,7 +1,6 @@
 //! Writes a call of every function of an emitted module.
 //!
-//! The list comes from the module's text, so a newly emitted function is called, measured and compared with a budget
-//! automatically.
+//! The list comes from the module's text, so a newly emitted function is called, measured and compared with a budget automatically.
 
 mod functions;
 mod many_states;

@@ -1,8 +1,7 @@
 //! Recursive Newton-Euler with rotors (the book, Sect. 7.5), and what follows from it.
 //!
-//! The outward recursion gives each link frame's angular velocity w, angular acceleration dw, and linear acceleration a of the
-//! origin minus gravity. Each body, fixed in a frame whose origin accelerates with a, needs the force and the moment about that
-//! origin:
+//! The outward recursion gives each link frame's angular velocity w, angular acceleration dw, and linear acceleration a of the origin minus
+//! gravity. Each body, fixed in a frame whose origin accelerates with a, needs the force and the moment about that origin:
 //!
 //! ```text
 //! F = m a + dw x mc + w x (w x mc)        N = I dw + w x (I w) + mc x a

@@ -52,9 +52,8 @@ impl Regressor {
 }
 
 impl Model {
-    /// The places of the standard parameters. Each link has ten. Each joint follows with the given ones of rotor inertia, rotor
-    /// and joint viscous friction, Coulomb friction, offset, cubic and Stribeck friction, and spring stiffness. The payload's ten
-    /// come last.
+    /// The places of the standard parameters. Each link has ten. Each joint follows with the given ones of rotor inertia, rotor and joint
+    /// viscous friction, Coulomb friction, offset, cubic and Stribeck friction, and spring stiffness. The payload's ten come last.
     fn standard_places(&mut self) -> Vec<&mut f64> {
         let (mut links, mut drives) = (Vec::new(), Vec::new());
         for joint in &mut self.joints {

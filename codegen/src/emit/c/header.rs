@@ -20,8 +20,7 @@ pub(super) fn macro_of(prefix: &str, length: Length) -> String {
     }
 }
 
-/// Prefix of the macros of a robot: its name with upper and lower case exchanged. So names that differ only in case have
-/// different macros.
+/// Prefix of the macros of a robot: its name with upper and lower case exchanged. So names that differ only in case have different macros.
 pub(super) fn macros_of(name: &str) -> String {
     let turned = |c: char| if c.is_ascii_lowercase() { c.to_ascii_uppercase() } else { c.to_ascii_lowercase() };
     name.chars().map(turned).collect()

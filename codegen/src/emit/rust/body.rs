@@ -1,8 +1,7 @@
 //! The body of an emitted function: the lines of its listing, and a long one in parts.
 //!
-//! A formatter of Rust needs many times the memory of its text, and a hundred times the time of writing a line. Nearly every line
-//! of a body fits into one line of text, whose form is known, so these lines are written directly. The formatter only handles
-//! longer lines.
+//! A formatter of Rust needs many times the memory of its text, and a hundred times the time of writing a line. Nearly every line of a body
+//! fits into one line of text, whose form is known, so these lines are written directly. The formatter only handles longer lines.
 
 use proc_macro2::{Ident, TokenStream};
 use quote::{format_ident, quote};

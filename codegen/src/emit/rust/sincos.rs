@@ -1,10 +1,9 @@
 //! Sine and cosine in the emitted module: where the functions ask for them, and the private block that answers.
 //!
-//! `libm` and `std` take a single angle. `fast` takes four or eight angles at once: `sincos/fast_f64.rs` and
-//! `sincos/fast_f32.rs`, real Rust files that are included verbatim. Its angles are separate arguments, which travel in
-//! registers. A processor that loads a vector just after its numbers were stored one by one waits for all the stores, longer than
-//! the sines take. A single angle, and in f32 each of two, gains nothing from vectors and is computed by itself; in f64 an unused
-//! sine or cosine is left out.
+//! `libm` and `std` take a single angle. `fast` takes four or eight angles at once: `sincos/fast_f64.rs` and `sincos/fast_f32.rs`, real Rust
+//! files that are included verbatim. Its angles are separate arguments, which travel in registers. A processor that loads a vector just after
+//! its numbers were stored one by one waits for all the stores, longer than the sines take. A single angle, and in f32 each of two, gains
+//! nothing from vectors and is computed by itself; in f64 an unused sine or cosine is left out.
 
 use std::collections::BTreeSet;
 

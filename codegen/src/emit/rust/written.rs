@@ -1,9 +1,8 @@
 //! Functions that write their result to a place of the caller: `NAME_into`, which the function `NAME` and the C interface call.
 //!
-//! A compiler gathers the entries of a returned value elsewhere and then copies them. If it sees all entries at once, it combines
-//! entries of several columns in vectors. Then the steps of all columns are live, and most are spilled to the stack. So each
-//! column is written as soon as its steps are done. A barrier separates two columns: the compiler moves no store across it, and
-//! it costs no instruction.
+//! A compiler gathers the entries of a returned value elsewhere and then copies them. If it sees all entries at once, it combines entries of
+//! several columns in vectors. Then the steps of all columns are live, and most are spilled to the stack. So each column is written as soon
+//! as its steps are done. A barrier separates two columns: the compiler moves no store across it, and it costs no instruction.
 
 use proc_macro2::TokenStream;
 use quote::{format_ident, quote};

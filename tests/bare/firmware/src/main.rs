@@ -1,5 +1,4 @@
-//! Runs the controlled SCARA on a Cortex-M4F. In addition to the lines of the library, prints the torques of each step and their
-//! cost:
+//! Runs the controlled SCARA on a Cortex-M4F. In addition to the lines of the library, prints the torques of each step and their cost:
 //!
 //! | line | fields |
 //! |---|---|

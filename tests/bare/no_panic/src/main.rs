@@ -1,6 +1,5 @@
-//! A program that links only if nothing in it can panic. It calls every function of every robot's module and of its inverse
-//! kinematics, and the functions for many states of three robots. It also calls every step of the runtime and every block of
-//! inverse kinematics.
+//! A program that links only if nothing in it can panic. It calls every function of every robot's module and of its inverse kinematics, and
+//! the functions for many states of three robots. It also calls every step of the runtime and every block of inverse kinematics.
 //!
 //! Its panic handler calls a function that nobody defines. Where the optimiser proves every panic unreachable, the handler is
 //! dropped and the program links; one surviving panic keeps it, and the linker reports

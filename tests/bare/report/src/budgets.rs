@@ -88,8 +88,7 @@ pub(crate) fn functions(image: &Image, printed: &Printed) -> Result<Modules, Str
         }
         let [nothing, _] =
             printed.functions.get(&format!("{module}::{NOTHING}")).ok_or("the firmware did not measure an empty call")?;
-        // The linker merges functions with the same code. So a function without sines may only exist under the name of the other
-        // module.
+        // The linker merges functions with the same code. So a function without sines may only exist under the name of the other module.
         let twin = match module.strip_suffix(LIBM) {
             Some(robot) => format!("{robot}{FAST}::{name}"),
             None => format!("{}{LIBM}::{name}", module.trim_end_matches(FAST)),
@@ -106,8 +105,7 @@ pub(crate) fn functions(image: &Image, printed: &Printed) -> Result<Modules, Str
 }
 
 impl Measured {
-    /// Measurements of the program that only controls an arm, of the program that measures it, and of the functions measured
-    /// alone.
+    /// Measurements of the program that only controls an arm, of the program that measures it, and of the functions measured alone.
     pub(crate) fn of(control: &Image, image: &Image, printed: &Printed, functions: Modules) -> Result<Measured, String> {
         let [_, stack] =
             printed.functions.get("control::control_step").copied().ok_or("the firmware did not measure a control step")?;

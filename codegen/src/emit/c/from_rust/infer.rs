@@ -19,8 +19,7 @@ pub(super) struct Call {
     pub(super) sizes: Vec<(String, Length)>,
 }
 
-/// Types inferred so far in a function. Addresses identify expressions and patterns; they are stable as long as the program
-/// lives.
+/// Types inferred so far in a function. Addresses identify expressions and patterns; they are stable as long as the program lives.
 pub(super) struct Inference<'a, 'p> {
     pub(super) program: &'p Program<'a>,
     pub(super) unknowns: Unknowns,
