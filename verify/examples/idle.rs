@@ -1,4 +1,4 @@
-//! Steps without influence in the modules of some robots: `cargo run --release -p armgen-verify --example idle -- robots/*.yaml`.
+//! Lists steps without influence on results: `cargo run --release -p armgen-verify --example idle -- robots/*.yaml`.
 
 use armgen_codegen::schedule::Options;
 use armgen_codegen::source::Source;

@@ -1,5 +1,5 @@
-//! How far the emitted functions of some robots are from what the checker allows them to lose: by criterion the largest part of it that any
-//! entry takes, `cargo run -p armgen-verify --example margins -- robots/*.yaml`.
+//! Margins between the emitted functions of robots and the checker's limits on rounding. For each criterion, it prints the largest used
+//! fraction over all entries: `cargo run -p armgen-verify --example margins -- robots/*.yaml`.
 
 use armgen_codegen::kinds::Scalar;
 use armgen_codegen::program::Trig;
