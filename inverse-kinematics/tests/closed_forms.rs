@@ -251,6 +251,11 @@ in_both_scalars! {
         assert!(found.points.iter().all(|[c, _]| (c - (1.0 - 0.5 * doubt)).abs() <= FEW), "{found:?}");
         let beyond = line_and_circle(1.0, 0.0, 1.0 + 0.5 * doubt, FEW, doubt);
         assert_eq!((beyond.count, beyond.double, beyond.points[0]), (1, true, [1.0, 0.0]), "{beyond:?}");
+        // A point on the axis: any angle may meet a height that may be 0.
+        let any = line_and_circle(0.0, 0.0, 0.5 * doubt, FEW, doubt);
+        assert_eq!((any.count, any.double, any.free), (1, true, false), "{any:?}");
+        assert!(any.error > 3.0, "{any:?}");
+        assert_eq!(line_and_circle(0.0, 0.0, 1.5 * doubt, FEW, doubt).count, 0);
     }
 
     /// Near p = 0 what is computed of (x, y) has few digits of its own; its direction has length 1 all the same.

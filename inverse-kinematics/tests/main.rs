@@ -12,4 +12,5 @@ mod reference;
 mod regional;
 mod shoulder_elbow_wrist;
 mod solutions;
+mod special;
 mod texts;

@@ -1,13 +1,15 @@
 //! What the emitted module makes of a construction's solutions: verdicts, order, limits, the nearest posture.
 
 mod arm {
-    #![allow(dead_code, unreachable_pub, clippy::approx_constant, clippy::excessive_precision)]
+    #![allow(dead_code, unreachable_pub, clippy::approx_constant, clippy::excessive_precision, clippy::eq_op)]
+    use crate::common::Random;
     use armgen_inverse_kinematics::f64::*;
 
     const DOF: usize = 2;
+    const LENGTH: Real = 2.0;
     const MAX_SOLUTIONS: usize = 4;
     const PRISMATIC: [bool; DOF] = [false, true];
-    const POSITION_LIMITS: [[Real; 2]; DOF] = [[3.0, 10.0], [-1.0, Real::INFINITY]];
+    const POSITION_LIMITS: [[Real; 2]; DOF] = [[3.0, 9.0], [-1.0, Real::INFINITY]];
 
     include!("../src/blocks/solutions.rs");
 
@@ -80,6 +82,24 @@ mod arm {
         assert_eq!(whole_turns_between(Real::NEG_INFINITY, Real::INFINITY), 0.0);
     }
 
+    /// Rounding puts a posture at a limit beside it: it is kept, and put back; one that is further away is not.
+    #[test]
+    fn limits_are_met_to_rounding() {
+        let mut random = Random(17);
+        for _ in 0..10_000 {
+            let dust = 10f64.powf(random.between(-17.0, -8.0)) * if random.between(-1.0, 1.0) < 0.0 { -1.0 } else { 1.0 };
+            let limit = random.below(3);
+            let at = |dust: f64| {
+                let (angle, slide) = [(3.0 + dust, 0.5), (9.0 - dust, 0.5), (5.0, -1.0 + LENGTH * dust)][limit];
+                conclude(&with(&[branch(angle, slide, 0)]), false).within_limits()
+            };
+            let q = at(dust).as_slice().first().expect("dropped").q;
+            assert!((3.0..=9.0).contains(&q[0]) && -1.0 <= q[1], "{q:?}");
+            // Beyond what rounding does.
+            assert_eq!(at(-1.5e-8).count, 0, "{limit}");
+        }
+    }
+
     #[test]
     fn nearest_modulo_turns() {
         let found = conclude(&with(&[branch(3.0, 0.0, 0), branch(-1.0, 0.0, 1)]), false);
@@ -93,8 +113,15 @@ mod arm {
 
     #[test]
     fn poses() {
-        let rows = |f: Frame| [f[0], f[1], f[2], [Real::NAN; 4]];
-        assert!(is_pose(&rows(IDENTITY)), "the last row is not read");
+        let rows = |f: Frame| [f[0], f[1], f[2], [5.0; 4]];
+        assert!(is_pose(&rows(IDENTITY)), "the last row is finite, and that is all that is asked of it");
+        for place in 0..16 {
+            for entry in [Real::NAN, Real::INFINITY, Real::NEG_INFINITY] {
+                let mut t = rows(IDENTITY);
+                t[place / 4][place % 4] = entry;
+                assert!(!is_pose(&t) && !all_finite(&t), "{place} {entry}");
+            }
+        }
         let mut t = IDENTITY;
         t[2][2] = -1.0;
         assert!(!is_pose(&rows(t)), "left-handed");

@@ -151,7 +151,7 @@ fn comments_speak_of_what_c_has() {
         let position = name == "position3r";
         assert_eq!(about.starts_with("position of t.\n * t: a pose"), position, "{name}: {about}");
         assert_eq!(c.contains("/* All postures that reach a position. */"), position, "{name}");
-        assert_eq!(c.contains(" 4 /* the position is not finite */"), position, "{name}");
+        assert_eq!(c.contains(" 4 /* an entry of t is not finite */"), position, "{name}");
         assert_eq!(name == "iiwa", about.contains("x is k × e normalised"), "{name}: {about}");
     }
 }

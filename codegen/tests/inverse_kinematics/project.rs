@@ -72,7 +72,7 @@ impl Project {
         self.write(&format!("src/{module}_ik.rs"), ik);
         self.main += &format!("#[allow(dead_code)]\nmod {module};\n{allowed}mod {module}_ik;\n");
         let columns = match () {
-            () if ik.contains("the position alone is read") => "3..",
+            () if ik.contains("the position alone is asked for") => "3..",
             () if ik.contains("of which position and z axis are to be reached") => "2..",
             () => "0..",
         };

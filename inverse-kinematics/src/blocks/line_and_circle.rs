@@ -25,7 +25,8 @@ pub struct LineAndCircle {
 ///
 /// - `noise`: how far rounding may have moved d, a and b, >= 0, in the unit of d. `doubt`: how far d may be off besides, by errors of the angles
 ///   that it was computed from.
-/// - r <= noise: with |d| <= noise every angle is a solution (`free`), else none, and the line misses by |d|.
+/// - r <= noise: with |d| <= noise every angle is a solution (`free`). With |d| <= noise + doubt the angle is unknown: (1, 0) is given, `double`, with an
+///   error of pi. Else none, and the line misses by |d|.
 /// - |r - |d|| <= noise + doubt: `double`. Two points where r - |d| is more than noise: they meet the equation, as the angles that d was
 ///   computed from stand, and what lies between them does not. Else the point of contact; the root w, which is below sqrt(2 noise/r), is dropped.
 /// - r < |d|: none; `miss` is |d| - r. NaN in any argument: none.
@@ -54,6 +55,11 @@ pub fn line_and_circle(a: Real, b: Real, d: Real, noise: Real, doubt: Real) -> L
     } else if gap.abs() <= noise {
         found.count = 1;
         found.free = true;
+    } else if r <= noise && gap.abs() <= slack {
+        // What the other angles are off by decides about this one.
+        found.count = 1;
+        found.double = true;
+        found.error = 3.141592653589793;
     } else {
         found.miss = -gap;
     }

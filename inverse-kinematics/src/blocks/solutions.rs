@@ -1,5 +1,6 @@
 // The result of inverse kinematics as the emitted module gives it.
-// The module says before: DOF, MAX_SOLUTIONS, PRISMATIC: [bool; DOF], POSITION_LIMITS: [[Real; 2]; DOF] (lower and upper; infinite where there is none).
+// The module says before: DOF, MAX_SOLUTIONS, PRISMATIC: [bool; DOF], POSITION_LIMITS: [[Real; 2]; DOF] (lower and upper; infinite where there is none),
+// LENGTH: the arm's, m.
 
 /// What is known of all the solutions at a pose.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -13,7 +14,7 @@ pub enum Verdict {
     NearDouble,
     /// Some joints can move while the end effector stays.
     Continuum,
-    /// The pose has an entry that is not finite, or no rotation.
+    /// The pose has an entry that is not finite, or no rotation where that is asked for.
     Invalid,
 }
 
@@ -57,17 +58,23 @@ impl Solutions {
     }
 
     /// The postures within `POSITION_LIMITS`, angles moved by whole turns into them: by none if that does, else by as few as possible.
-    /// The verdict stays what it was.
+    /// Rounding of the pose can move a joint variable by the root of the unit roundoff (rad; of a slide times `LENGTH`): so far beyond a limit it
+    /// counts as within, and is put at the limit. The verdict stays what it was.
     pub fn within_limits(&self) -> Solutions {
         let mut within = Solutions { miss: self.miss, ..Solutions::none(self.verdict) };
+        // Where two solutions meet the error of a joint is the root of the pose's, elsewhere it is smaller.
+        let error = sqrt(UNIT_ROUNDOFF);
         for solution in self.as_slice() {
             let mut moved = *solution;
             let mut inside = true;
             for ((q, [low, high]), prismatic) in moved.q.iter_mut().zip(POSITION_LIMITS).zip(PRISMATIC) {
+                let slack = if prismatic { error * LENGTH } else { error };
+                let (least, most) = (low - slack, high + slack);
                 if !prismatic {
-                    *q += WHOLE_TURN * whole_turns_between((low - *q) / WHOLE_TURN, (high - *q) / WHOLE_TURN);
+                    *q += WHOLE_TURN * whole_turns_between((least - *q) / WHOLE_TURN, (most - *q) / WHOLE_TURN);
                 }
-                inside &= low <= *q && *q <= high;
+                inside &= least <= *q && *q <= most;
+                *q = q.max(low).min(high);
             }
             if let (true, Some(slot)) = (inside, within.all.get_mut(within.count)) {
                 *slot = moved;
@@ -120,7 +127,19 @@ fn whole_turns_between(low: Real, high: Real) -> Real {
     0.0
 }
 
-/// Whether the first three rows of a pose are finite and its rotation is one, to 1e-6.
+/// Whether all entries are finite.
+fn all_finite(t: &[[Real; 4]; 4]) -> bool {
+    let mut sum = 0.0;
+    for row in t {
+        for x in row {
+            // NaN of an infinity, too.
+            sum += x - x;
+        }
+    }
+    sum == 0.0
+}
+
+/// Whether all entries of a pose are finite and its rotation is one, to 1e-6.
 fn is_pose(t: &[[Real; 4]; 4]) -> bool {
     let [x, y, z, _] = t;
     let rows = [[x[0], x[1], x[2]], [y[0], y[1], y[2]], [z[0], z[1], z[2]]];
@@ -130,8 +149,7 @@ fn is_pose(t: &[[Real; 4]; 4]) -> bool {
     let square = near(dot(u, u), 1.0) && near(dot(v, v), 1.0) && near(dot(u, v), 0.0);
     let third = cross(u, v);
     let right = near(third[0], w[0]) && near(third[1], w[1]) && near(third[2], w[2]);
-    let finite = [x[3], y[3], z[3]].iter().all(|p| p.is_finite());
-    finite && square && right
+    all_finite(t) && square && right
 }
 
 /// How far from orthonormal a rotation may be.

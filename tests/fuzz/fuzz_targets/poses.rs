@@ -12,6 +12,7 @@ mod solver {
     pub const DOF: usize = 6;
     pub const MAX_SOLUTIONS: usize = 16;
     const PRISMATIC: [bool; DOF] = [false; DOF];
+    const LENGTH: Real = 1.0;
     pub const POSITION_LIMITS: [[Real; 2]; DOF] = [[-3.0, 4.0]; DOF];
 
     include!("../../../inverse-kinematics/src/blocks/solutions.rs");

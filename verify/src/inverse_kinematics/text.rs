@@ -265,7 +265,7 @@ const HEAD: &str = "Real,Solution,Solutions,Verdict,BRANCHES,DOF,MAX_SOLUTIONS};
 const BEGIN: &str = "pubfninverse_kinematics(t:&[[Real;4];4])->Solutions{let[x,y,z,_]=*t;";
 const BEGIN_REDUNDANT: &str = "pubfninverse_kinematics(t:&[[Real;4];4],redundancy:Real)->Solutions{let[x,y,z,_]=*t;";
 const ROTATION_REDUNDANT: &str = "if!is_pose(t)||!redundancy.is_finite(){returnSolutions::none(Verdict::Invalid);}";
-const POSITION_REDUNDANT: &str = "letposition=[x[3],y[3],z[3]];if!position.iter().all(|p|p.is_finite())||!redundancy.is_finite()\
+const POSITION_REDUNDANT: &str = "letposition=[x[3],y[3],z[3]];if!all_finite(t)||!redundancy.is_finite()\
                                   {returnSolutions::none(Verdict::Invalid);}";
 const VALUE: &str = "letvalue=GIVEN.value(redundancy);";
 const FIRST_POSITION: &str = "letposition=transform(&inverse(&GIVEN.link(value)),position);";
@@ -276,8 +276,7 @@ const LINKS: &str = "letlinks=LOOP.links_at(&t);";
 const MOVED_POINT: &str = "letmutlinks=LOOP.links;links[";
 const MOVED: &str = "letmutlinks=LOOP.links_at(&t);links[";
 const ROTATION: &str = "if!is_pose(t){returnSolutions::none(Verdict::Invalid);}lett:Frame=[x,y,z];";
-const POSITION: &str =
-    "letposition=[x[3],y[3],z[3]];if!position.iter().all(|p|p.is_finite()){returnSolutions::none(Verdict::Invalid);}";
+const POSITION: &str = "letposition=[x[3],y[3],z[3]];if!all_finite(t){returnSolutions::none(Verdict::Invalid);}";
 const POLISH: &str = "polish(&mutfound,&Loop{links:&links,prismatic:LOOP.prismatic,target:[0.0;3],length:LENGTH});";
 /// The conclusion of closed forms.
 const CLOSE: &str =

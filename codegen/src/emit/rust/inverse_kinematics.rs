@@ -344,18 +344,18 @@ fn arrangement(way: &Arrangement, scalar: Scalar) -> TokenStream {
 pub(in crate::emit) fn about_target(target: Target) -> &'static str {
     match target {
         Target::Pose => {
-            "the pose of the end effector in the base frame, T = (R p; 0 1) by rows, lengths in m; the last row is not read"
+            "the pose of the end effector in the base frame, T = (R p; 0 1) by rows, lengths in m; the last row only has to be finite"
         }
         Target::Position => {
-            "a pose of the end effector in the base frame by rows, lengths in m, of which the position alone is read, as far as the task has it"
+            "a pose of the end effector in the base frame by rows, lengths in m; the position alone is asked for, as far as the task has it"
         }
         Target::Pointing => {
             "a pose of the end effector in the base frame, T = (R p; 0 1) by rows, lengths in m, of which position and z axis are to be \
-             reached; the last row is not read"
+             reached; the last row only has to be finite"
         }
         Target::Planar => {
-            "the pose of the end effector in the base frame, T = (R p; 0 1) by rows, lengths in m; the last row is not read, nor what the \
-             task leaves out"
+            "the pose of the end effector in the base frame, T = (R p; 0 1) by rows, lengths in m; the last row and what the task \
+             leaves out only have to be finite"
         }
     }
 }
@@ -363,8 +363,8 @@ pub(in crate::emit) fn about_target(target: Target) -> &'static str {
 /// What is refused as `Invalid`.
 pub(in crate::emit) fn what_is_invalid(found: &InverseKinematics) -> &'static str {
     match (found.target, &found.redundancy) {
-        (Target::Position, None) => "the position is not finite",
-        (Target::Position, Some(_)) => "the position or the redundancy is not finite",
+        (Target::Position, None) => "an entry of t is not finite",
+        (Target::Position, Some(_)) => "an entry of t or the redundancy is not finite",
         (_, None) => "an entry of t is not finite or its rotation none to 1e-6",
         (_, Some(_)) => "an entry of t is not finite or its rotation none to 1e-6, or the redundancy is not finite",
     }
@@ -625,7 +625,7 @@ fn arguments_read(found: &InverseKinematics) -> TokenStream {
             });
             quote! {
                 let position = [x[3], y[3], z[3]];
-                if !position.iter().all(|p| p.is_finite()) #condition {
+                if !all_finite(t) #condition {
                     return Solutions::none(Verdict::Invalid);
                 }
                 #value

@@ -8,12 +8,13 @@ fn keep<V>(value: V) {
 
 macro_rules! every_block {
     ($scalar:ident) => {
-        #[allow(unreachable_pub)]
+        #[allow(unreachable_pub, clippy::eq_op)]
         mod $scalar {
             use super::{black_box, keep};
             use armgen_inverse_kinematics::$scalar::*;
 
             const DOF: usize = 6;
+            const LENGTH: Real = 1.0;
             const MAX_SOLUTIONS: usize = 16;
             const PRISMATIC: [bool; DOF] = [false, false, true, false, false, false];
             const POSITION_LIMITS: [[Real; 2]; DOF] = [[-3.0, 3.0]; DOF];

@@ -1,0 +1,55 @@
+//! Postures at which constructions break: joints at multiples of right angles with dust beside. A pose that was made from a posture is in reach.
+
+in_both_scalars! {
+    #[allow(unreachable_pub, dead_code)]
+    mod arm {
+        use super::*;
+        include!("common/arm.rs");
+        include!("common/solver.rs");
+    }
+    use arm::*;
+
+    const SINGLE: bool = UNIT_ROUNDOFF > 1e-10;
+    const RIGHT: f64 = std::f64::consts::FRAC_PI_2;
+
+    /// A small number of any size above rounding, or 0.
+    fn dust(random: &mut Random) -> f64 {
+        let size = if SINGLE { random.between(-8.0, -1.5) } else { random.between(-16.0, -4.0) };
+        [0.0, 10f64.powf(size), -10f64.powf(size)][random.below(3)]
+    }
+
+    /// Each joint at a right angle, slides at tenths, with odds of `odds`; dust beside.
+    fn special(arm: &Arm, odds: f64, random: &mut Random) -> Vec<f64> {
+        let mut q = arm.posture(random);
+        for (q, slides) in q.iter_mut().zip(&arm.prismatic) {
+            if random.between(0.0, 1.0) < odds {
+                let unit = if *slides { 0.1 } else { RIGHT };
+                *q = unit * (random.below(4) as f64 - 1.0) + dust(random);
+            }
+        }
+        q
+    }
+
+    /// Shoulder of two axes that meet, elbow, spherical wrist, of random lengths.
+    fn with_meeting_shoulder(random: &mut Random) -> Arm {
+        let d = [random.between(0.2, 0.5), random.between(0.2, 0.5), random.between(0.1, 0.2)];
+        let rows = [(0.0, 0.0, 0.0, RIGHT), (0.0, d[0], 0.0, RIGHT), (0.0, 0.0, 0.0, -RIGHT), (0.0, d[1], 0.0, -RIGHT), (0.0, 0.0, 0.0, RIGHT), (0.0, d[2], 0.0, 0.0)];
+        Arm::standard(&rows, &[])
+    }
+
+    /// The stretched elbow puts the wrist on axis 2, so that the root of rounding by which the elbow is unknown decides about joint 2.
+    #[test]
+    fn a_stretched_elbow_is_in_reach() {
+        let random = &mut Random(1);
+        for _ in 0..10 {
+            let arm = with_meeting_shoulder(random);
+            let plan = plan(&arm);
+            for i in 0..200 {
+                let mut q = special(&arm, 0.2, random);
+                q[2] = if i % 2 == 0 { 0.0 } else { 2.0 * RIGHT } + dust(random);
+                let found = solve(&plan, &arm, &arm.at(&q));
+                assert!(found.count > 0 || found.near || found.continuum, "{q:?}");
+            }
+        }
+    }
+}
