@@ -17,8 +17,8 @@
 //! the old one: that finds sin² + cos² = 1, distributivity and the addition theorems without a rewrite rule, and it makes every
 //! identity between expressions an exact test. The points are fixed: the same expressions on every machine, in every run.
 //!
-//! **Constants** that are multiplied out are interned by that form, never by fingerprint. One in which sums are shared has no such form: it is
-//! the same as another where their values in the field are equal and enclosures of 96 bits overlap.
+//! **Constants** are interned by their form. Two of different forms are the same where their values in the field are equal and enclosures of
+//! 96 bits overlap.
 
 pub mod field;
 pub mod matrix;
@@ -479,8 +479,28 @@ impl Pool {
 
     /// a b.
     pub fn mul(&mut self, a: ExprId, b: ExprId) -> ExprId {
-        let negate = a.is_negated() != b.is_negated();
-        let (a, b) = (a.unsigned(), b.unsigned());
+        let mut negate = a.is_negated() != b.is_negated();
+        let (mut a, mut b) = (a.unsigned(), b.unsigned());
+        if self.is_constant(b) && !self.is_constant(a) {
+            (a, b) = (b, a);
+        }
+        // Constant factors in a row are one, unless their product is none.
+        while a != ExprId::ZERO && a != ExprId::ONE && self.is_constant(a) {
+            let (factor, rest) = match self.node(b) {
+                Node::Constant(_) => (b, ExprId::ONE),
+                Node::Mul(factor, rest) if self.is_constant(factor) => (factor, rest),
+                _ => break,
+            };
+            if factor == ExprId::ZERO {
+                return ExprId::ZERO;
+            }
+            if factor == ExprId::ONE {
+                break;
+            }
+            let Some(product) = self.product_of_constants(a, factor) else { break };
+            negate ^= product.is_negated();
+            (a, b) = (product.unsigned(), rest);
+        }
         if a == ExprId::ZERO || b == ExprId::ZERO {
             return ExprId::ZERO;
         }
@@ -489,24 +509,6 @@ impl Pool {
         }
         if b == ExprId::ONE {
             return a.signed(negate);
-        }
-        match (self.is_constant(a), self.is_constant(b)) {
-            (true, true) => {
-                if let Some(constant) = self.product_of_constants(a, b) {
-                    return constant.signed(negate);
-                }
-            }
-            (false, true) => return self.mul(b, a).signed(negate),
-            // Two constant factors in a row are one.
-            (true, false) => {
-                if let Node::Mul(c, rest) = self.node(b) {
-                    if self.is_constant(c) {
-                        let factor = self.mul(a, c);
-                        return self.mul(factor, rest).signed(negate);
-                    }
-                }
-            }
-            (false, false) => {}
         }
         let (fa, fb) = (self.fingerprint(a), self.fingerprint(b));
         let fingerprint = [0, 1].map(|i| self.field.mul(fa[i], fb[i]));

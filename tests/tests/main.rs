@@ -6,6 +6,7 @@ mod c_face;
 mod embedding;
 mod emission;
 mod emitted;
+mod exported_arms;
 mod general_angles;
 mod hostile_files;
 mod import_bounds;

@@ -31,6 +31,11 @@ type Interval = (IBig, IBig);
 pub(super) struct Known(Mutex<Vec<(usize, Interval)>>);
 
 impl Known {
+    /// Whether the enclosure to so many places is there.
+    pub(super) fn has(&self, places: usize) -> bool {
+        self.0.lock().unwrap_or_else(PoisonError::into_inner).iter().any(|(of, _)| *of == places)
+    }
+
     /// The enclosure to so many places, found by `enclose` if it is not there.
     fn at(&self, places: usize, enclose: impl FnOnce() -> Interval) -> Interval {
         let list = || self.0.lock().unwrap_or_else(PoisonError::into_inner);
@@ -74,7 +79,14 @@ impl Enclosures {
     fn within(&mut self, lost: usize, number: &Number) -> Interval {
         let mut guard = 0;
         loop {
-            let (low, high) = self.to(self.places + guard, |all| all.sum(number));
+            let places = self.places + guard;
+            let (low, high) = self.to(places, |all| {
+                // Those inside others first: however deep they are, nothing is called deeper.
+                for atom in number.shared_inside(&|atom| atom.is_enclosed(places)) {
+                    all.atom(&atom);
+                }
+                all.sum(number)
+            });
             let width = (&high - &low).bit_len();
             if width <= guard + lost {
                 return (floor_shift(low, guard), ceil_shift(high, guard));
@@ -117,8 +129,9 @@ impl Enclosures {
                 self.roots.entry(n.clone()).or_insert_with(root).clone()
             }
             Atom::RootOf(n) => n.own.at(places, || {
-                let (low, high) = Enclosures::new(2 * places).number(n);
-                let floor = |n: IBig| IBig::from(UBig::try_from(n).unwrap_or(UBig::ZERO).sqrt());
+                // How wide that of a small number comes out, only the number that it is a factor of can judge.
+                let (low, high) = self.number(n);
+                let floor = |n: IBig| IBig::from((UBig::try_from(n).unwrap_or(UBig::ZERO) << places).sqrt());
                 (floor(low), floor(high) + IBig::ONE)
             }),
             Atom::Pi => self.pi.get_or_insert_with(|| pi(places)).clone(),

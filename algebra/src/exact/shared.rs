@@ -10,9 +10,12 @@
 //!
 //! A constant is then a graph whose size grows with the number of operations. It has no normal form: two graphs may have one value. Whoever
 //! has to know compares values, in a prime field and by enclosures (`Pool::constant`, in the module `ring`).
+//!
+//! A graph is as deep as a chain of joints is long. Nothing that reads it calls itself once for each level: whoever needs values of what is inside
+//! takes them in the order of [`Number::shared_inside`]; comparisons and texts end at a sum.
 
 use std::cmp::Ordering;
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::fmt;
 use std::hash::{Hash, Hasher};
 use std::ops::Deref;
@@ -37,7 +40,24 @@ pub struct Shared {
 
 impl Shared {
     pub(super) fn new(number: Number) -> Arc<Shared> {
-        Arc::new(Shared { number, ..Shared::default() })
+        Arc::new(Shared { number, sine: Known::default(), cosine: Known::default(), own: Known::default() })
+    }
+}
+
+/// What it alone holds is taken apart here, level by level, not by the drops of what is inside.
+impl Drop for Shared {
+    fn drop(&mut self) {
+        let mut open = vec![std::mem::take(&mut self.number)];
+        while let Some(number) = open.pop() {
+            for (atom, _) in number.terms.into_keys().flatten() {
+                let inner = match atom {
+                    Atom::RootOf(of) | Atom::Sine(of) | Atom::Cosine(of) | Atom::Inverse(of) => Some(of),
+                    Atom::Sum(sum) => Arc::into_inner(sum).map(|sum| sum.terms),
+                    Atom::Root(_) | Atom::Pi | Atom::Arctangent(_) => None,
+                };
+                open.extend(inner.and_then(Arc::into_inner).map(|mut alone| std::mem::take(&mut alone.number)));
+            }
+        }
     }
 }
 
@@ -91,7 +111,7 @@ impl Hash for Shared {
 
 /// A sum that is one factor. Sums are told apart by 128 bits that follow from their text, in which the sums inside them stand as such
 /// bits: comparing two graphs node by node would take exponential time.
-#[derive(Clone, Debug)]
+#[derive(Clone)]
 pub struct Sum {
     digest: [u64; 2],
     terms: Arc<Shared>,
@@ -112,6 +132,13 @@ impl Sum {
     /// The sum that it is.
     pub fn terms(&self) -> &Arc<Shared> {
         &self.terms
+    }
+}
+
+/// By its bits: written out, a graph would be a text of exponential length.
+impl fmt::Debug for Sum {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "Sum({:x?})", self.digest)
     }
 }
 
@@ -174,6 +201,33 @@ impl Number {
     /// Whether there are roots among the factors of its terms.
     pub fn has_roots(&self) -> bool {
         self.terms.keys().flatten().any(|(atom, _)| matches!(atom, Atom::Root(_) | Atom::RootOf(_)))
+    }
+
+    /// The atoms in it that hold other numbers (sums, inverses, nested roots; sines and cosines of angles that hold some), those inside others before
+    /// these, each once; those that are `known` and what they hold are left out. Sums may be as deep as an arm has joints.
+    pub(crate) fn shared_inside(&self, known: &dyn Fn(&Atom) -> bool) -> Vec<Atom> {
+        let inside = |number: &Number| -> Vec<(Atom, bool)> {
+            let atoms = number.terms.keys().flatten().map(|(atom, _)| atom).rev();
+            atoms.filter(|atom| holds_others(atom) && !known(atom)).map(|atom| (atom.clone(), false)).collect()
+        };
+        let (mut found, mut seen, mut open) = (Vec::new(), BTreeSet::new(), inside(self));
+        while let Some((atom, ready)) = open.pop() {
+            if ready {
+                found.push(atom);
+                continue;
+            }
+            if !seen.insert(atom.clone()) {
+                continue;
+            }
+            let inner = match &atom {
+                Atom::Sum(sum) => inside(sum.terms()),
+                Atom::Inverse(of) | Atom::RootOf(of) | Atom::Sine(of) | Atom::Cosine(of) => inside(of),
+                Atom::Root(_) | Atom::Pi | Atom::Arctangent(_) => Vec::new(),
+            };
+            open.push((atom, true));
+            open.extend(inner);
+        }
+        found
     }
 
     /// How many terms it would have multiplied out, if nothing cancelled.
@@ -249,6 +303,25 @@ impl Number {
             return self.clone();
         }
         Number::atom(Atom::Sum(Arc::new(Sum::of(self))))
+    }
+}
+
+impl Atom {
+    /// Whether the number that it shares is enclosed to so many places already.
+    pub(super) fn is_enclosed(&self, places: usize) -> bool {
+        match self {
+            Atom::RootOf(of) | Atom::Inverse(of) => of.own.has(places),
+            Atom::Sum(sum) => sum.terms().own.has(places),
+            _ => false,
+        }
+    }
+}
+
+fn holds_others(atom: &Atom) -> bool {
+    let number = |atom: &Atom| matches!(atom, Atom::Sum(_) | Atom::Inverse(_) | Atom::RootOf(_));
+    match atom {
+        Atom::Sine(angle) | Atom::Cosine(angle) => angle.terms.keys().flatten().any(|(atom, _)| number(atom)),
+        atom => number(atom),
     }
 }
 

@@ -42,6 +42,11 @@ impl Definitions {
     /// The formula of a number; the sums that it is made of are defined from now on.
     pub fn formula(&mut self, number: &Number) -> String {
         self.define(number);
+        self.written(number)
+    }
+
+    /// The formula of a number whose sums are defined.
+    fn written(&self, number: &Number) -> String {
         text(number, &|sum| format!("k{}", self.names[sum]))
     }
 
@@ -52,15 +57,12 @@ impl Definitions {
 
     /// Defines the sums of a number, those inside others first.
     fn define(&mut self, number: &Number) {
-        for (atom, _) in number.terms().flat_map(|(monomial, _)| monomial) {
-            match atom {
-                Atom::Sum(sum) if !self.names.contains_key(sum) => {
-                    let formula = self.formula(sum.terms());
-                    self.names.insert(Sum::clone(sum), self.texts.len());
-                    self.texts.push(formula);
-                }
-                Atom::RootOf(of) | Atom::Sine(of) | Atom::Cosine(of) | Atom::Inverse(of) => self.define(of),
-                _ => {}
+        let known = |atom: &Atom| matches!(atom, Atom::Sum(sum) if self.names.contains_key(sum));
+        for atom in number.shared_inside(&known) {
+            if let Atom::Sum(sum) = atom {
+                let formula = self.written(sum.terms());
+                self.names.insert(Sum::clone(&sum), self.texts.len());
+                self.texts.push(formula);
             }
         }
     }

@@ -1,7 +1,7 @@
 //! Exact constants of a pool: each value once, positive, with its sign on the edge.
 //!
-//! A [`Number`] that is multiplied out is interned by its form. One in which sums are shared has no form of its own: it is the same as another
-//! constant where both are equal in the field and enclosures of 96 bits overlap.
+//! A [`Number`] is interned by its form. It has no form of its own where sums are shared or long integers under roots have common factors: it is
+//! the same as another constant where both are equal in the field and enclosures of 96 bits overlap.
 
 use std::borrow::Cow;
 use std::sync::Arc;
@@ -145,14 +145,14 @@ impl Pool {
 
     /// A constant that has this value and may look different, because not all is multiplied out in one of them.
     fn equal_constant(&self, value: &Number, element: Element) -> Option<ExprId> {
-        if element == self.field.zero() && value.is_shared() && value.is_near(&Number::zero()) {
+        // The first constant of a pool is 0 itself.
+        if element == self.field.zero() && !self.is_empty() && value.is_near(&Number::zero()) {
             return Some(ExprId::ZERO);
         }
         let expr = self.known([element; 2])?;
         let Node::Constant(id) = self.node(expr) else { return None };
         let other = &self.constants[id.0 as usize];
-        let same = (value.is_shared() || other.is_shared()) && self.is_near(value, other, expr.is_negated());
-        same.then_some(expr)
+        self.is_near(value, other, expr.is_negated()).then_some(expr)
     }
 
     fn is_near(&self, value: &Number, size: &Number, negative: bool) -> bool {

@@ -4,11 +4,14 @@
 //! exact constant has a value here: a fraction by division, a root by a square root of the field, pi and the angles that are
 //! no multiples of pi/12 by fixed values on which nothing is known, with every (sine, cosine) a point of the circle. If the
 //! constants of a robot hold a root that the field lacks, the next smaller prime = 1 mod 24 that has it is taken instead.
+//!
+//! Roots of integers are products of the roots of a *basis*: integers without common factors, found by greatest common divisors alone, since
+//! the norm of an axis is too long to be factored. No product of some of them is a square, so that the sign of each root is free.
 
 use std::collections::{BTreeMap, BTreeSet, HashSet};
 use std::sync::Arc;
 
-use dashu_base::{Gcd, Signed, UnsignedAbs};
+use dashu_base::{Gcd, Signed, SquareRoot, UnsignedAbs};
 use dashu_int::UBig;
 use num_modular::ModularSymbols;
 
@@ -44,8 +47,8 @@ impl Element {
 pub struct Field {
     /// The constant angle of [`AngleSum::turned`], with its sine and cosine.
     turn: Option<(Arc<Turn>, (Element, Element))>,
-    /// The root of a composite integer that is coprime to all other radicands: its sign is independent of theirs, as that of a prime's root is.
-    coprime_radicand: Option<Atom>,
+    /// The basis of the integers under roots, with a root of each.
+    roots: Vec<(UBig, Element)>,
     p: u64,
     /// 1/p mod 2^64.
     inverse: u64,
@@ -62,52 +65,47 @@ impl Field {
 
     /// A field in which the roots of `numbers` exist; `None` if they are more than [`MOST_ROOTS`].
     pub fn with_roots_of<'a>(numbers: impl IntoIterator<Item = &'a Number>) -> Option<Field> {
-        let mut roots = collect_roots(numbers);
-        if roots.iter().filter(|root| !in_every_field(root)).count() > MOST_ROOTS {
-            return None;
-        }
-        roots.retain(is_of_prime);
-        Field::with_roots(&roots, None)
+        let (radicands, nested) = collect_roots(numbers);
+        let few = |basis: &Vec<UBig>| basis.iter().filter(|n| !in_every_field(n)).count() + nested.len() <= MOST_ROOTS;
+        // Each root by itself; where these are too many, all that stand in a product as one.
+        let apart = coprime_basis(radicands.iter().flatten().cloned());
+        let basis = Some(apart).filter(few).or_else(|| {
+            let products = radicands.iter().map(|factors| factors.iter().fold(UBig::ONE, |product, n| product * n));
+            Some(coprime_basis(products)).filter(few)
+        });
+        Field::with_roots(basis?)
     }
 
-    /// A field for `numbers` in which the sine and cosine of a constant angle too have their values; `None` also where the root that these need
-    /// may be tied to others.
-    pub fn with_turn<'a>(numbers: impl IntoIterator<Item = &'a Number>, turn: Turn) -> Option<Field> {
-        let (mut roots, of_turn) = (collect_roots(numbers), collect_roots([&turn.cosine, &turn.sine]));
-        let mut rest = of_turn.iter().filter(|root| matches!(root, Atom::Root(_)) && !is_of_prime(root));
-        let coprime_radicand = rest.next().cloned();
-        let tied = |root: &Atom| match (&coprime_radicand, root) {
-            (Some(Atom::Root(n)), Atom::Root(m)) => !n.gcd(m).is_one(),
-            _ => false,
-        };
-        if rest.next().is_some() || roots.iter().any(tied) {
-            return None;
-        }
-        roots.retain(is_of_prime);
-        roots.extend(of_turn.into_iter().filter(|root| matches!(root, Atom::Root(_))));
-        let mut field = Field::with_roots(&roots, coprime_radicand)?;
+    /// A field for `numbers` in which the sine and cosine of a constant angle too have their values; `None` where that takes too many roots.
+    pub fn with_turn(numbers: &[Number], turn: Turn) -> Option<Field> {
+        let mut field = Field::with_roots_of(numbers.iter().chain([&turn.cosine, &turn.sine]))?;
         let circle = (field.number(&turn.sine), field.number(&turn.cosine));
         field.turn = Some((Arc::new(turn), circle));
         Some(field)
     }
 
-    /// A field that has the roots of integers. What is no square modulo p is told by Jacobi's symbol, for less than whether p is a prime costs.
-    fn with_roots(roots: &BTreeSet<Atom>, coprime_radicand: Option<Atom>) -> Option<Field> {
-        let radicands: Vec<&UBig> =
-            roots.iter().filter_map(|root| if let Atom::Root(n) = root { Some(n) } else { None }).collect();
-        std::iter::successors(Some(FIRST_PRIME), |p| Some(p - 24))
+    /// A field that has the roots of a basis. What is no square modulo p is told by Jacobi's symbol, for less than whether p is a prime costs.
+    fn with_roots(basis: Vec<UBig>) -> Option<Field> {
+        let squares = |p: u64| basis.iter().all(|n| remainder(n, p).jacobi(&p) == 1);
+        let mut field = std::iter::successors(Some(FIRST_PRIME), |p| Some(p - 24))
             .take(CANDIDATES)
-            .filter(|&p| radicands.iter().all(|n| remainder(n, p).jacobi(&p) == 1) && is_prime(p))
-            .map(|p| Field { coprime_radicand: coprime_radicand.clone(), ..Field::modulo(p) })
-            .find(|field| roots.iter().all(|root| field.root_atom(root).is_some()))
+            .find(|&p| squares(p) && is_prime(p))
+            .map(Field::modulo)?;
+        field.roots = basis
+            .into_iter()
+            .map(|n| {
+                let root = field.sqrt(field.rational(&Rational::from(n.clone()))).expect("a square modulo this prime");
+                (n, root)
+            })
+            .collect();
+        Some(field)
     }
 
     fn modulo(p: u64) -> Field {
         // Newton's iteration doubles the correct bits of the inverse modulo 2^64.
         let inverse = (0..6).fold(p, |x, _| x.wrapping_mul(2u64.wrapping_sub(p.wrapping_mul(x))));
         let r = (u128::MAX % u128::from(p) + 1) % u128::from(p);
-        let (turn, coprime_radicand, atoms) = (None, None, BTreeMap::new());
-        Field { turn, coprime_radicand, p, inverse, r_squared: r as u64, atoms }
+        Field { turn: None, roots: Vec::new(), p, inverse, r_squared: r as u64, atoms: BTreeMap::new() }
     }
 
     /// The constant angle of sums that are turned.
@@ -231,17 +229,72 @@ impl Field {
 
     /// The value of an exact constant.
     pub fn number(&mut self, number: &Number) -> Element {
+        // Those inside others first, each once: however deep they are, nothing is called deeper.
+        let unknown = number.shared_inside(&|atom| self.atoms.contains_key(atom));
+        for atom in unknown {
+            let value = match &atom {
+                Atom::Inverse(number) => self.inverse(self.terms(number)),
+                Atom::Sum(sum) => self.terms(sum.terms()),
+                other => self.alone(other),
+            };
+            self.atoms.insert(atom, value);
+        }
+        let mut lone: Vec<&Atom> = number.terms().flat_map(|(monomial, _)| monomial).map(|(atom, _)| atom).collect();
+        lone.retain(|atom| !matches!(atom, Atom::Root(_)) && !self.atoms.contains_key(atom));
+        for atom in lone {
+            let value = self.alone(atom);
+            self.atoms.insert(atom.clone(), value);
+        }
+        self.terms(number)
+    }
+
+    /// The value of a number whose shared atoms are known.
+    fn terms(&self, number: &Number) -> Element {
         let mut sum = self.zero();
         for (monomial, coefficient) in number.terms() {
             let mut product = self.rational(coefficient);
+            let mut radicand = UBig::ONE;
             for (atom, power) in monomial {
-                let value = self.atom(atom);
+                if let (Atom::Root(n), 1) = (atom, power) {
+                    radicand *= n;
+                    continue;
+                }
+                let value = self.atoms.get(atom).copied().unwrap_or_else(|| self.alone(atom));
                 let value = if *power < 0 { self.inverse(value) } else { value };
                 product = self.mul(product, self.pow(value, u64::from(power.unsigned_abs())));
+            }
+            if !radicand.is_one() {
+                product = self.mul(product, self.root(&radicand));
             }
             sum = self.add(sum, product);
         }
         sum
+    }
+
+    /// The value of an atom that holds no other; that of a product of roots is `root`.
+    fn alone(&self, atom: &Atom) -> Element {
+        match atom {
+            Atom::Sine(angle) => self.circle(self.unrelated(&Atom::Cosine(angle.clone()))).0,
+            Atom::Cosine(_) => self.circle(self.unrelated(atom)).1,
+            Atom::Root(n) => self.root(n),
+            other => self.unrelated(other),
+        }
+    }
+
+    /// The root of an integer, from the roots of the basis. A value on which nothing is known where they are not enough.
+    fn root(&self, n: &UBig) -> Element {
+        let (mut rest, mut product) = (n.clone(), self.one());
+        for (factor, root) in &self.roots {
+            while (&rest % factor).is_zero() {
+                rest /= factor;
+                product = self.mul(product, *root);
+            }
+        }
+        if rest.is_one() {
+            product
+        } else {
+            self.unrelated(&Atom::Root(n.clone()))
+        }
     }
 
     fn rational(&self, value: &Rational) -> Element {
@@ -252,37 +305,6 @@ impl Field {
         } else {
             size
         }
-    }
-
-    fn atom(&mut self, atom: &Atom) -> Element {
-        if let Some(&value) = self.atoms.get(atom) {
-            return value;
-        }
-        let value = match atom {
-            Atom::Root(_) | Atom::RootOf(_) => self.root_atom(atom).unwrap_or_else(|| self.unrelated(atom)),
-            Atom::Pi | Atom::Arctangent(_) => self.unrelated(atom),
-            Atom::Sine(angle) => self.circle(self.unrelated(&Atom::Cosine(angle.clone()))).0,
-            Atom::Cosine(angle) => self.circle(self.unrelated(&Atom::Cosine(angle.clone()))).1,
-            Atom::Inverse(number) => {
-                let value = self.number(number);
-                self.inverse(value)
-            }
-            Atom::Sum(sum) => self.number(sum.terms()),
-        };
-        self.atoms.insert(atom.clone(), value);
-        value
-    }
-
-    fn root_atom(&self, atom: &Atom) -> Option<Element> {
-        let square = match atom {
-            // A root of a product that was not factored or nested might be tied to others, with a sign that
-            // the field does not know: only roots of primes get their algebraic value, and one that is known to be tied to none.
-            Atom::Root(n) if is_of_prime(atom) || self.coprime_radicand.as_ref() == Some(atom) => {
-                self.rational(&Rational::from(n.clone()))
-            }
-            _ => return None,
-        };
-        self.sqrt(square)
     }
 
     /// (sine, cosine) = (2t, 1 - t²)/(1 + t²): a point of the circle.
@@ -312,44 +334,70 @@ fn remainder(n: &UBig, p: u64) -> u64 {
     u64::try_from(n % UBig::from(p)).expect("a remainder of p")
 }
 
-/// Whether an atom is the root of 2 or 3, which exist modulo every p = 1 mod 24.
-fn in_every_field(atom: &Atom) -> bool {
-    matches!(atom, Atom::Root(n) if *n == UBig::from(2u8) || *n == UBig::from(3u8))
+/// Whether an integer is 2 or 3, whose roots exist modulo every p = 1 mod 24.
+fn in_every_field(n: &UBig) -> bool {
+    *n == UBig::from(2u8) || *n == UBig::from(3u8)
 }
 
-/// Whether an atom is the root of a prime that fits 64 bits.
-fn is_of_prime(atom: &Atom) -> bool {
-    matches!(atom, Atom::Root(n) if u64::try_from(n).is_ok_and(is_prime))
-}
-
-/// The roots in numbers, with those under roots.
-fn collect_roots<'a>(numbers: impl IntoIterator<Item = &'a Number>) -> BTreeSet<Atom> {
-    let (mut roots, mut open) = (BTreeSet::new(), numbers.into_iter().collect::<Vec<_>>());
+/// The integers whose roots stand in numbers, those of a product together, and the nested roots.
+fn collect_roots<'a>(numbers: impl IntoIterator<Item = &'a Number>) -> (BTreeSet<Vec<UBig>>, BTreeSet<Atom>) {
+    let (mut radicands, mut nested) = (BTreeSet::new(), BTreeSet::new());
+    let mut open = numbers.into_iter().collect::<Vec<_>>();
     // Sums that are not multiplied out hold each other, one in many: each is looked at once.
     let mut seen: HashSet<*const Shared> = HashSet::new();
     while let Some(number) = open.pop() {
-        for (atom, _) in number.terms().flat_map(|(monomial, _)| monomial) {
-            let inner: &Arc<Shared> = match atom {
-                Atom::Root(_) => {
-                    if !roots.contains(atom) {
-                        roots.insert(atom.clone());
+        for (monomial, _) in number.terms() {
+            let mut factors = Vec::new();
+            for (atom, _) in monomial {
+                let inner: &Arc<Shared> = match atom {
+                    Atom::Root(n) => {
+                        factors.push(n.clone());
+                        continue;
                     }
-                    continue;
+                    Atom::RootOf(inner) => {
+                        nested.insert(atom.clone());
+                        inner
+                    }
+                    Atom::Inverse(inner) => inner,
+                    Atom::Sum(sum) => sum.terms(),
+                    _ => continue,
+                };
+                if seen.insert(Arc::as_ptr(inner)) {
+                    open.push(inner);
                 }
-                Atom::RootOf(inner) => {
-                    roots.insert(atom.clone());
-                    inner
-                }
-                Atom::Inverse(inner) => inner,
-                Atom::Sum(sum) => sum.terms(),
-                _ => continue,
-            };
-            if seen.insert(Arc::as_ptr(inner)) {
-                open.push(inner);
+            }
+            if !factors.is_empty() {
+                radicands.insert(factors);
             }
         }
     }
-    roots
+    (radicands, nested)
+}
+
+/// Integers without common factors, not one of them a square, whose roots give those of `integers`, of 2 and of 3. Primes stay as they are.
+fn coprime_basis(integers: impl IntoIterator<Item = UBig>) -> Vec<UBig> {
+    let mut basis = vec![UBig::from(2u8), UBig::from(3u8)];
+    let mut open: Vec<UBig> = integers.into_iter().collect::<BTreeSet<_>>().into_iter().collect();
+    while let Some(n) = open.pop() {
+        let root = n.sqrt();
+        if &root * &root == n {
+            if !n.is_one() {
+                open.push(root);
+            }
+            continue;
+        }
+        let Some(at) = basis.iter().position(|other| !other.gcd(&n).is_one()) else {
+            basis.push(n);
+            continue;
+        };
+        if basis[at] != n {
+            let other = basis.swap_remove(at);
+            let shared = (&other).gcd(&n);
+            open.extend([other / &shared, n / &shared, shared]);
+        }
+    }
+    basis.sort();
+    basis
 }
 
 /// Whether n is prime: Miller and Rabin with the first twelve primes as bases, which decides below 3.3e24 (Sorenson and Webster 2015).
@@ -415,6 +463,19 @@ mod tests {
             assert!(Field::with_roots_of(&all).is_none());
             all.pop();
         }
+    }
+
+    #[test]
+    fn many_roots_that_stand_in_one_product_are_one() {
+        let primes = [5, 7, 11, 13, 17, 19, 23, 29, 31, 37, 41, 43, 47, 53, 59, 61, 67];
+        assert!(primes.len() > MOST_ROOTS);
+        let root = |n: i64| Number::from(n).sqrt().unwrap();
+        let product = primes.iter().fold(Number::one(), |product, &n| &product * &root(n));
+        let doubled = &product * &root(2);
+        let mut field = Field::for_constants([&product, &doubled]);
+        let [one, other, two] = [&product, &doubled, &root(2)].map(|number| field.number(number));
+        assert_eq!(field.mul(one, two), other);
+        assert_eq!(field.mul(one, one), field.number(&(&product * &product)));
     }
 
     #[test]

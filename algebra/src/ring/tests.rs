@@ -1,4 +1,5 @@
 use super::*;
+use crate::exact::Rational;
 
 fn pool() -> Pool {
     Pool::new(Field::for_constants([]))
@@ -122,4 +123,72 @@ fn constants_that_are_not_multiplied_out_are_known_by_their_values() {
     let (product, squares) = (p.mul(sum, difference), [p.mul(x, x), p.mul(y, y)]);
     assert_eq!(p.sub(squares[0], squares[1]), product);
     assert_eq!(p.sub(squares[1], squares[0]), -product);
+}
+
+/// The norm of an axis as exporters write it: the root of an integer too long to be factored.
+fn norm(component: i64, scale: i64) -> Number {
+    let component = Number::from(Rational::from(component) / Rational::from(scale));
+    (&Number::one() + &(&component * &component)).sqrt().expect("positive")
+}
+
+#[test]
+fn roots_of_long_integers_keep_their_relations() {
+    let (one, other) = (norm(437_114, 10_000_000_000_000), norm(123, 1_000_000));
+    let mut p = Pool::new(Field::for_constants([&one, &other]));
+    let inverse = one.inverse().expect("not 0");
+    let (x, y, s) = (p.constant(&one), p.constant(&inverse), p.symbol(Symbol::Sine(0)));
+    assert_eq!(p.mul(x, y), ExprId::ONE);
+    let (xs, square) = (p.mul(x, s), p.constant(&(&one * &one)));
+    let (xxs, scaled) = (p.mul(x, xs), p.mul(square, s));
+    assert_eq!(xxs, scaled);
+    let z = p.constant(&other);
+    let product = p.mul(x, z);
+    assert_eq!(p.mul(product, product), p.constant(&(&(&one * &one) * &(&other * &other))));
+}
+
+#[test]
+fn roots_of_integers_with_a_long_common_factor_are_one_constant_however_they_are_written() {
+    // 10007 and 10009 are primes beyond trial division: nothing splits the products.
+    let root = |n: i64| Number::from(n).sqrt().expect("positive");
+    let (left, right, rest) = (root(10_007 * 10_009), root(10_007 * 10_037), root(10_009 * 10_037));
+    let mut p = Pool::new(Field::for_constants([&left, &right, &rest]));
+    let (a, b) = (p.constant(&left), p.constant(&right));
+    let (product, c, common) = (p.mul(a, b), p.constant(&rest), p.integer(10_007));
+    assert_eq!(product, p.mul(common, c));
+}
+
+#[test]
+fn products_of_nested_roots_end() {
+    let nested = (&Number::one() + &Number::pi()).sqrt().expect("positive");
+    let mut p = Pool::new(Field::for_constants([&nested]));
+    let (r, two, s) = (p.constant(&nested), p.integer(2), p.symbol(Symbol::Sine(0)));
+    let square = p.mul(r, r);
+    let (cube, other) = (p.mul(square, r), p.mul(r, square));
+    assert_eq!(cube, other);
+    let (double, rs) = (p.mul(two, cube), p.mul(r, s));
+    let (left, right) = (p.mul(double, rs), p.mul(rs, double));
+    assert_eq!(left, right);
+}
+
+#[test]
+fn deep_constants_need_no_deep_stack() {
+    let work = || {
+        let angle = crate::exact::Angle::new(Number::from(Rational::from(7) / Rational::from(10)));
+        let step = &Number::from(2) + &(&angle.sin() * &Number::pi());
+        let fifth = Number::from(Rational::from(1) / Rational::from(5));
+        let mut number = step.clone();
+        for _ in 0..3000 {
+            number = number.plus(&fifth).times(&step).times(&fifth);
+        }
+        assert!(number.is_shared() && number.to_f64().is_finite());
+        let mut field = Field::for_constants([&number]);
+        let value = field.number(&number);
+        let doubled = field.number(&number.plus(&number));
+        assert_eq!(field.add(value, value), doubled);
+        let mut definitions = crate::exact::Definitions::default();
+        definitions.formula(&number);
+        assert!(definitions.texts().len() > 300, "{}", definitions.texts().len());
+        drop((number, field, definitions));
+    };
+    std::thread::Builder::new().stack_size(1 << 18).spawn(work).expect("a thread").join().expect("no overflow");
 }
