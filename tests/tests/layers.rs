@@ -132,6 +132,10 @@ const PAGE: Layers = &[
     ("document", &["bodies", "html", "rows", "sheet", "warnings"]),
 ];
 
+/// A function is data; its program is executed without it.
+const NUMBERS: Layers =
+    &[("scalar", &[]), ("function", &[]), ("program", &["function", "scalar"]), ("execute", &["function", "program", "scalar"])];
+
 const COMMANDS: Layers =
     &[("input", &[]), ("companions", &[]), ("file_names", &[]), ("commands", &["companions", "file_names", "input"])];
 
@@ -574,7 +578,7 @@ fn read(name: &str) -> Crate {
     Crate::read(&root.join(name).join("src"))
 }
 
-const CRATES: [(&str, Layers); 9] = [
+const CRATES: [(&str, Layers); 10] = [
     ("algebra", ALGEBRA),
     ("description", DESCRIPTION),
     ("codegen", CODEGEN),
@@ -584,12 +588,24 @@ const CRATES: [(&str, Layers); 9] = [
     ("page", PAGE),
     ("cli", COMMANDS),
     ("verify", VERIFY),
+    ("numbers", NUMBERS),
 ];
 
 /// Crates whose modules have no layers: crates of one file, the judges, and the building blocks of inverse kinematics, which are
 /// many files of one module. `inverse-kinematics/tests/texts.rs` checks the declared needs of these blocks.
-const OTHERS: [&str; 9] =
-    ["certify", "cli/run", "cli/terminal", "generated", "inverse-kinematics", "lab", "tests", "tests/calls", "tests/experiments"];
+const OTHERS: [&str; 11] = [
+    "certify",
+    "cli/run",
+    "cli/terminal",
+    "elementary",
+    "evaluate",
+    "generated",
+    "inverse-kinematics",
+    "lab",
+    "tests",
+    "tests/calls",
+    "tests/experiments",
+];
 
 #[test]
 fn modules_name_those_of_lower_layers_alone() {
@@ -618,6 +634,15 @@ fn the_checker_does_not_depend_on_the_generator() {
     assert!(!tree("armgen-verify").contains("armgen-codegen"));
     assert!(!tree("armgen-description").contains("armgen-codegen"));
     assert!(tree("armgen-certify").contains("armgen-codegen"), "who has both");
+}
+
+/// What executes programs knows neither who makes them nor who checks them.
+#[test]
+fn what_executes_programs_depends_on_no_robot() {
+    for above in ["armgen-codegen", "armgen-verify", "armgen-description"] {
+        assert!(!tree("armgen-numbers").contains(above), "armgen-numbers depends on {above}");
+    }
+    assert!(tree("armgen-evaluate").contains("armgen-codegen"), "who has both");
 }
 
 /// The program builds while robot.yaml is faulty: nothing that it is made of holds the robot of robot.yaml.

@@ -88,6 +88,8 @@ pub(super) fn filled(template: &str, scalar: Scalar, rounding: &str, value: &dyn
 
 #[cfg(test)]
 mod tests {
+    use armgen_elementary::texts;
+
     use super::*;
 
     /// The numbers of a text, without signs: those with a point.
@@ -99,7 +101,7 @@ mod tests {
     /// Rust has its own text, the others these numbers: the same ones.
     #[test]
     fn the_numbers_are_those_of_the_text_in_rust() {
-        for (k, text) in [include_str!("rust/sincos/fast_f64.rs"), include_str!("rust/sincos/fast_f32.rs")].iter().enumerate() {
+        for (k, text) in [texts::FAST_F64, texts::FAST_F32].iter().enumerate() {
             let code: String =
                 text.lines().filter(|line| !line.trim_start().starts_with("//")).flat_map(|line| [line, "\n"]).collect();
             let of_rust = numbers(&code);

@@ -11,6 +11,7 @@ mod signature;
 mod sincos;
 pub(in crate::emit) mod written;
 
+use armgen_elementary::texts::STRIBECK;
 use proc_macro2::TokenStream;
 use quote::{format_ident, quote, ToTokens};
 
@@ -31,8 +32,6 @@ use literal::literal;
 pub use runtime::single_traits;
 pub(super) use signature::accesses;
 use signature::{ignored, of_parts, structures, type_of, typed, usize_literal, with_fields};
-
-const STRIBECK: &str = include_str!("rust/stribeck.rs");
 
 /// The emitted module as text.
 pub fn print(module: &Module, origin: &Origin, notes: &Notes) -> String {

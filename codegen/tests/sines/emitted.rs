@@ -1,7 +1,7 @@
 //! The emitted text, unchanged from an emitted module.
 
 pub(crate) mod f64 {
-    include!("../../src/emit/rust/sincos/fast_f64.rs");
+    include!("../../../elementary/src/fast_f64.rs");
 
     pub(crate) const RANGE: f64 = SIN_COS_RANGE;
 
@@ -26,7 +26,7 @@ pub(crate) mod f64 {
 }
 
 pub(crate) mod f32 {
-    include!("../../src/emit/rust/sincos/fast_f32.rs");
+    include!("../../../elementary/src/fast_f32.rs");
 
     pub(crate) const RANGE: f32 = SIN_COS_RANGE;
 

@@ -1,12 +1,14 @@
 //! Sine and cosine in the emitted module: where the functions ask for them, and the private block that answers.
 //!
-//! `libm` and `std` take a single angle. `fast` takes four or eight angles at once: `sincos/fast_f64.rs` and `sincos/fast_f32.rs`, real Rust
-//! files that are included verbatim. Its angles are separate arguments, which travel in registers. A processor that loads a vector just after
-//! its numbers were stored one by one waits for all the stores, longer than the sines take. A single angle, and in f32 each of two, gains
-//! nothing from vectors and is computed by itself; in f64 an unused sine or cosine is left out.
+//! `libm` and `std` take a single angle. `fast` takes four or eight angles at once: `fast_f64.rs` and `fast_f32.rs` of the crate
+//! `armgen-elementary`, real Rust files that are included verbatim. Its angles are separate arguments, which travel in
+//! registers. A processor that loads a vector just after its numbers were stored one by one waits for all the stores, longer than
+//! the sines take. A single angle, and in f32 each of two, gains nothing from vectors and is computed by itself; in f64 an unused
+//! sine or cosine is left out.
 
 use std::collections::BTreeSet;
 
+use armgen_elementary::texts::{FAST_F32, FAST_F64};
 use proc_macro2::{TokenStream, TokenTree};
 use quote::{format_ident, quote, ToTokens};
 use syn::Item;
@@ -17,9 +19,6 @@ use crate::kinds::Scalar;
 use crate::program::listing::{angles, Angle, Name};
 use crate::program::{Function, Module, Trig};
 use crate::ring::Symbol;
-
-const FAST_F64: &str = include_str!("sincos/fast_f64.rs");
-const FAST_F32: &str = include_str!("sincos/fast_f32.rs");
 
 /// An angle that a function asks for, and the names of its sine and cosine.
 struct Asked {

@@ -1,0 +1,3 @@
+//! What is executed against what is compiled.
+
+mod bits;

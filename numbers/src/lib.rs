@@ -1,0 +1,43 @@
+//! Straight-line programs, executed over blocks of states without a compiler, with the bits of compiled code.
+//!
+//! A [`Function`] is plain data: inputs, operations on earlier values and constants, outputs. [`Program::new`] checks it and gives values
+//! places by their last use. [`Program::run`] then computes any number of states: 64 at a time, an operation of all of them before the next
+//! operation, in the vector instructions of this processor. A single state takes the same program with one number in each place.
+//!
+//! Every operation rounds by itself, in the order of the function: the bits are those of the same operations compiled, whatever the number of
+//! states and whatever the processor. Sines, cosines and the exponential are the compiled texts of `armgen-elementary`, or `libm`.
+//!
+//! No state makes it panic: what is infinite or not a number goes through all operations as IEEE 754 says. [`Program::run`] allocates
+//! nothing; its [`Workspace`] is made before.
+//!
+//! ```
+//! use armgen_numbers::{Argument, Function, Input, Operand, Operation, Operator, Output, Program, Result, Sines};
+//!
+//! // m g l sin q of a pendulum
+//! let pendulum = Function {
+//!     name: "gravity".into(),
+//!     arguments: vec![Argument { name: "q".into(), length: 1 }],
+//!     results: vec![Result { name: "g".into(), shape: vec![1] }],
+//!     sines: Sines::Libm,
+//!     angles: vec![armgen_numbers::Angle { argument: 0, terms: vec![(0, false)], turn: None }],
+//!     inputs: vec![Input::Sine(0)],
+//!     operations: vec![Operation { operator: Operator::Multiply, left: Operand::Constant(9.81), right: Operand::Value(0) }],
+//!     outputs: vec![Output { operand: Operand::Value(1), negated: false }],
+//! };
+//! let program = Program::new(&pendulum).expect("every value stands before its use");
+//! let mut torque = [0.0; 3];
+//! program.run(&[&[0.0, 0.5, 1.0]], &mut torque, &mut program.workspace()).expect("three states");
+//! assert_eq!(torque[2], 9.81 * libm::sin(1.0));
+//! ```
+
+mod execute;
+mod function;
+mod program;
+mod scalar;
+#[cfg(test)]
+mod tests;
+
+pub use execute::{Compiled, Mismatch, Workspace};
+pub use function::{Angle, Argument, Function, Input, Operand, Operation, Operator, Output, Result, Sines};
+pub use program::{Invalid, Program};
+pub use scalar::Scalar;
