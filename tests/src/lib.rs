@@ -6,6 +6,7 @@
 //! - [`shown`]: what `show --format json` prints, read back;
 //! - [`technical_project`]: every closed form of the SCARA's technical project, and the comparison with what is shown;
 //! - [`random`]: random arms and states from a seed;
+//! - [`exported_arms`]: random arms with the numbers of real files;
 //! - [`precision`]: every tolerance, with its reason.
 //!
 //! And what they judge: this crate is the first downstream project of the generator, its `build.rs` generates every robot.
@@ -21,6 +22,7 @@ mod answers;
 pub mod compiled;
 pub mod count;
 pub mod emitted;
+pub mod exported_arms;
 pub mod formula;
 pub mod functions;
 pub mod installed;

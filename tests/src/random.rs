@@ -39,7 +39,8 @@ impl Random {
         low + (high - low) * (self.next() >> 11) as f64 / (1u64 << 53) as f64
     }
 
-    fn one_of<'a>(&mut self, choices: &[&'a str]) -> &'a str {
+    /// One of several texts, each as likely.
+    pub fn one_of<'a>(&mut self, choices: &[&'a str]) -> &'a str {
         choices[self.whole(0, choices.len() as i64 - 1) as usize]
     }
 }
