@@ -24,7 +24,7 @@ fn main() {
             });
         }
     }
-    // The forms with parameters at run time cost what the others cost, but for their arguments.
+    // The forms with parameters at run time cost the same as the others, except for their arguments.
     let functions = common.unwrap_or_default().into_iter().filter(|(name, _)| !name.ends_with("_with"));
     let given = |argument: &String| {
         match argument.as_str() {

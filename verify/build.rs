@@ -1,5 +1,5 @@
-//! Writes the building blocks of inverse kinematics with another scalar: the same texts, in which every number is of the type `Real` that stands
-//! before them (`src/inverse_kinematics/soundness.rs`), so that they run in prime fields.
+//! Writes the building blocks of inverse kinematics with another scalar, so that they run in prime fields. The texts stay the same, but
+//! every number has the type `Real` that `src/inverse_kinematics/soundness.rs` defines.
 
 use std::fmt::Write;
 
@@ -37,7 +37,7 @@ fn main() {
     println!("cargo::rerun-if-changed=build.rs");
 }
 
-/// A line with its decimal numbers as elements of a field. A constant of the type is a tolerance, or pi: 0, for nothing is rounded.
+/// A line with its decimal numbers as field elements. Scalar constants are a tolerance or pi; both become 0, because a field is exact.
 fn in_field(line: &str) -> String {
     if line.trim_start().starts_with("//") {
         return String::new();
@@ -52,7 +52,7 @@ fn in_field(line: &str) -> String {
         text += before;
         let end = behind.find(|c: char| !(c.is_ascii_alphanumeric() || c == '_' || c == '.')).unwrap_or(behind.len());
         let word = &behind[..end];
-        // 0..n is a range, x1 a name, 1.0 a number.
+        // `0..n` is a range, `x1` a name, `1.0` a number.
         let is_name = before.ends_with(|c: char| c.is_ascii_alphanumeric() || c == '_');
         if word.contains('.') && !word.contains("..") && !is_name {
             let _ = write!(text, "Real::of({word})");

@@ -12,7 +12,7 @@ use criterion::Criterion;
 #[path = "../../codegen/tests/sines/emitted.rs"]
 mod emitted;
 
-/// The sines and cosines of one, four and eight angles alone: those of `--trig fast`, of `libm` and of the standard library.
+/// The sines and cosines of one, four and eight angles alone, by `--trig fast`, `libm` and the standard library.
 fn sines(criterion: &mut Criterion, states: &[[f64; 8]]) {
     let mut bench = |name: &str, call: &dyn Fn(&[f64; 8])| {
         criterion.bench_function(&format!("sines/{name}"), |bencher| {

@@ -1,4 +1,4 @@
-//! What needs generator and checker both. The generator proposes exact values of literals; the checker, which does not depend on it, decides.
+//! Uses of both generator and checker. The generator proposes exact values of literals; the independent checker decides.
 //!
 //! ```no_run
 //! # fn main() -> Result<(), Box<dyn std::error::Error>> {
@@ -32,8 +32,9 @@ use armgen_verify::{bounds, companion, hash, verify_with};
 
 /// Verifies the text of a module against the text of its description.
 ///
-/// The exact values of literals come from `certificate` or, without one, from a run of the generator; the checker trusts neither. A certificate
-/// must equal the certificate of the report: each difference is a fault. Faults of the description are rendered into [`Report::faults`].
+/// The exact values of literals come from `certificate` or, without it, from a run of the generator; the checker trusts neither.
+/// A certificate must equal the certificate of the report; each difference is a fault.
+/// [`Report::faults`] also contains rendered faults of the description.
 pub fn verify<'a>(source: &Source, text: impl Into<ModuleText<'a>>, certificate: Option<&Certificate>) -> Report {
     let text = text.into();
     let refused = |fault: String| Report { faults: vec![fault], ..Report::of(hash(source.text()), hash(text.text)) };
@@ -49,25 +50,25 @@ pub fn verify<'a>(source: &Source, text: impl Into<ModuleText<'a>>, certificate:
     if !report.functions.is_empty() {
         return report;
     }
-    // The certificate does not fit the texts. Which function is wrong, if any, is worth knowing all the same.
+    // The certificate does not match the texts. A run of the generator still shows which function is wrong, if any.
     let by_generator = verify_by_generator(source, text, &module);
     let others: Vec<String> = report.faults.into_iter().filter(|fault| !by_generator.faults.contains(fault)).collect();
     Report { faults: [by_generator.faults, others].concat(), ..by_generator }
 }
 
-/// Verifies a module that the generator has just made from a description.
+/// Verifies a freshly generated module against its description.
 pub fn certify(source: &Source, generated: &Generated) -> Report {
     certify_in(source, generated, Language::Rust)
 }
 
-/// The same for the module in a language.
+/// The same for the module in another language.
 pub fn certify_in(source: &Source, generated: &Generated, language: Language) -> Report {
     let text = generated.in_language(language);
     let text = ModuleText { language, text: &text };
     verify_with(source, text, Claims::from_numbers(&generated.constants), Effort::default())
 }
 
-/// That a value of a function can leave the scalar within the limits of the joints, with the place in the description.
+/// The diagnostic that a function's value can exceed the scalar's range within the joint limits, with its position.
 pub fn beyond_the_scalar(source: &Source, function: &str, scalar: Scalar) -> Diagnostics {
     let (read, mut diagnostics) = validate::read_for(source, scalar);
     if let Some((manipulator, places)) = read {
@@ -77,7 +78,7 @@ pub fn beyond_the_scalar(source: &Source, function: &str, scalar: Scalar) -> Dia
     diagnostics
 }
 
-/// Puts the error bounds of all functions into the documentation of a generated module: see [`bounds`](mod@bounds).
+/// Adds the error bounds of all functions to the documentation of a generated module: see [`bounds`](mod@bounds).
 pub fn document_bounds(source: &Source, generated: &mut Generated) -> Result<(), String> {
     let manipulator = valid(source)?;
     let module = Module::read(&generated.module)?;
@@ -87,18 +88,18 @@ pub fn document_bounds(source: &Source, generated: &mut Generated) -> Result<(),
     Ok(())
 }
 
-/// The companion of a generated module, with a running error bound for each function: see [`companion`](mod@companion). `import` brings in the
-/// module's types: `use super::robot::*;`.
+/// The companion of a generated module, with a running error bound for each function: see [`companion`](mod@companion). `import` must
+/// bring the module's types into scope: `use super::robot::*;`.
 pub fn companion(generated: &Generated, import: &str) -> Result<String, String> {
     companion::companion(&Module::read(&generated.module)?, &Claims::from_numbers(&generated.constants), import)
 }
 
-/// The end of the companion where inverse kinematics is emitted too: see [`companion::of_inverse_kinematics`].
+/// The final part of the companion for emitted inverse kinematics: see [`companion::of_inverse_kinematics`].
 pub fn companion_of_inverse_kinematics(generated: &Generated) -> Result<String, String> {
     Ok(companion::of_inverse_kinematics(&Module::read(&generated.module)?))
 }
 
-/// Verifies the text of a module of inverse kinematics against the text of its description, with counts at so many rational poses.
+/// Verifies a module of inverse kinematics against its description, and counts solutions at this number of rational poses.
 pub fn verify_inverse_kinematics(source: &Source, text: &str, poses: usize) -> inverse_kinematics::Report {
     match valid(source) {
         Ok(manipulator) => inverse_kinematics::verify(source, text, &proposal(source, &manipulator, text), poses),
@@ -111,7 +112,7 @@ pub fn verify_inverse_kinematics(source: &Source, text: &str, poses: usize) -> i
     }
 }
 
-/// The generator's exact values and texts of inverse kinematics, in the language and the scalar of a text.
+/// The generator's exact values and texts for inverse kinematics, in the language and scalar of `text`.
 pub fn proposal(source: &Source, manipulator: &Manipulator, text: &str) -> Proposal {
     let found = construction::of(manipulator);
     let (scalar, origin) = (inverse_kinematics::scalar_of(text), Origin::of(source));
@@ -138,14 +139,14 @@ fn values(found: &construction::InverseKinematics) -> Values {
     }
 }
 
-/// The arm of a description without a fault, else its faults in words.
+/// The arm of a valid description, or its faults in words.
 fn valid(source: &Source) -> Result<Manipulator, String> {
     let (read, diagnostics) = validate::read(source);
     read.map(|(manipulator, _)| manipulator).ok_or_else(|| diagnostics.render(source, Colour::Never))
 }
 
-/// Verifies with the constants of the generator. A module that lacks a pass has other constants: where the usual run does not explain some literal,
-/// runs without each pass are tried.
+/// Verifies with the generator's constants. A module generated without some pass has other constants, so if the usual run leaves
+/// literals unexplained, further runs omit each pass in turn.
 fn verify_by_generator(source: &Source, text: ModuleText<'_>, module: &Module) -> Report {
     let verify_without = |without: Passes| {
         let claims = generated_claims(source, module.real, without);

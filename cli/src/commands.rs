@@ -7,6 +7,7 @@ pub(crate) mod count;
 pub(crate) mod export;
 pub(crate) mod generate;
 pub(crate) mod import;
+pub(crate) mod package;
 pub(crate) mod page;
 pub(crate) mod show;
 pub(crate) mod verify;

@@ -29,6 +29,7 @@ use clap::error::ErrorKind;
 use clap::{Parser, Subcommand, ValueEnum, ValueHint};
 
 use commands::generate::{Beside, Choices};
+use commands::package::Manifest;
 use commands::{convert, export, import};
 
 const STYLES: Styles = Styles::styled()
@@ -134,6 +135,7 @@ A QUANTITY is the name of an emitted function (`armgen count FILE` lists them), 
   armgen generate robot.yaml --out robot.rs --c-abi       with robot.h, for C
   armgen generate robot.yaml --out robot.rs --runtime     with robot_runtime.rs, for controllers
   armgen generate robot.yaml --language c --out robot.h   the same functions in C, without Rust
+  armgen generate robot.yaml --language c --package --out robot_package   for CMake and ROS 2
   armgen generate robot.yaml --language matlab --out +robot
   armgen generate robot.yaml --functions gravity,inertia_matrix_with > robot.rs
 
@@ -151,6 +153,8 @@ Exit codes: 0 done, 1 the description is faulty, 2 a file cannot be read or writ
         choices: Choices,
         #[command(flatten)]
         beside: Beside,
+        #[command(flatten)]
+        manifest: Manifest,
     },
     /// Turn a serial chain of a URDF or a MuJoCo model into a description
     #[command(after_help = "Examples:
@@ -404,7 +408,9 @@ fn main() -> ExitCode {
             let asked = commands::show::Asked { symbolic, form: form.map(Form::from), digits, format };
             commands::show::run(&file, &quantities, &asked)
         }
-        Command::Generate { file, out, choices, beside } => commands::generate::run(&file, out.as_deref(), &choices, &beside),
+        Command::Generate { file, out, choices, beside, manifest } => {
+            commands::generate::run(&file, out.as_deref(), &choices, &beside, &manifest)
+        }
         Command::Import { file, choices, results } => import::run(&file, choices, &results),
         Command::Convert { file, convention, out } => convert::run(&file, convention, out.as_ref()),
         Command::Export { file, format, out } => export::run(&file, format, out.as_ref()),

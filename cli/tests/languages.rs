@@ -11,7 +11,7 @@ fn scara() -> String {
 }
 
 /// A new folder for one test.
-fn folder(name: &str) -> PathBuf {
+pub(crate) fn folder(name: &str) -> PathBuf {
     let folder = PathBuf::from(env!("CARGO_TARGET_TMPDIR")).join(name);
     let _ = fs::remove_dir_all(&folder);
     fs::create_dir_all(&folder).expect("a folder for the test");
@@ -20,7 +20,7 @@ fn folder(name: &str) -> PathBuf {
 
 /// Runs the program; what it said on standard error.
 #[track_caller]
-fn check(folder: &PathBuf, arguments: &[&str], code: i32) -> String {
+pub(crate) fn check(folder: &PathBuf, arguments: &[&str], code: i32) -> String {
     let output = Command::new(env!("CARGO_BIN_EXE_armgen")).current_dir(folder).args(arguments).output().expect("it runs");
     let said = String::from_utf8_lossy(&output.stderr).into_owned();
     assert_eq!(output.status.code(), Some(code), "armgen {arguments:?}\n{said}");

@@ -1,11 +1,12 @@
 //! How generation, operation counts and compile times grow with the joints of a chain.
 //!
 //! `cargo run --release -p armgen-codegen --example scaling [-- [--figure FILE] [--functions NAMES] [--generation] [JOINTS or ROBOT.yaml ...]]`
-//! generates chains of 2, 4, 8, 16 and 32 revolute joints (or of as many as asked for, or the robots of descriptions), twist angles pi/2, 0, -pi/2,
-//! 0 in turn and full inertias, compiles each emitted module by `rustc` at opt-level 3 in one codegen unit, prints a table and draws it.
+//! generates chains of 2, 4, 8, 16 and 32 revolute joints, or the requested chains and robots. Chains have twist angles pi/2, 0,
+//! -pi/2, 0 in turn and full inertias. The program compiles each emitted module by `rustc` at opt-level 3 in one codegen unit,
+//! prints a table and draws it.
 //!
-//! `r7` stands for a chain of 7 revolute joints whose angles are all decimals, `p10` for one of 10 prismatic joints, `rrp9` for one of 9 joints that
-//! are revolute, revolute, prismatic in turn. With `--generation` nothing is compiled.
+//! `r7` is a chain of 7 revolute joints whose angles are all decimals, `p10` a chain of 10 prismatic joints. `rrp9` has 9 joints:
+//! revolute, revolute, prismatic in turn. `--generation` compiles nothing.
 
 use std::fmt::Write;
 use std::path::{Path, PathBuf};
@@ -62,7 +63,7 @@ struct Row {
     operations: Vec<(String, usize)>,
 }
 
-/// The description that an argument stands for.
+/// The description that an argument denotes.
 fn description(what: &str) -> String {
     let kinds = what.trim_end_matches(|c: char| c.is_ascii_digit());
     match (what[kinds.len()..].parse(), kinds) {
@@ -100,14 +101,14 @@ fn measure(what: &str, selection: &Selection, compiled: bool, folder: &Path) -> 
     Row { arm: what.into(), joints, generation, memory_mib: peak_memory(), bytes: text.len(), compilation, operations }
 }
 
-/// The most memory that this process has had, MiB; not a number where the system does not tell.
+/// The most memory that this process has had, MiB; NaN where the system does not report it.
 fn peak_memory() -> f64 {
     let status = std::fs::read_to_string("/proc/self/status").unwrap_or_default();
     let line = status.lines().find_map(|line| line.strip_prefix("VmHWM:"));
     line.and_then(|rest| rest.trim().strip_suffix(" kB")?.parse::<f64>().ok()).map_or(f64::NAN, |kib| kib / 1024.0)
 }
 
-/// CPU time of the compiler, if there is one.
+/// CPU time of the compiler, if it is installed.
 fn compile(path: &Path) -> Option<Duration> {
     let before = processor_time(CHILDREN);
     let status = Command::new("rustc")
@@ -124,7 +125,7 @@ fn compile(path: &Path) -> Option<Duration> {
 const OWN: usize = 11;
 const CHILDREN: usize = 13;
 
-/// CPU time, of the user and of the system, where the system tells; zero otherwise.
+/// CPU time, of the user and of the system, where the system reports it; zero otherwise.
 fn processor_time(place: usize) -> Duration {
     let stat = std::fs::read_to_string("/proc/self/stat").unwrap_or_default();
     let fields: Vec<&str> = stat.rsplit(')').next().unwrap_or_default().split_whitespace().collect();

@@ -1,4 +1,4 @@
-//! The face for a build script: from a description beside the crate to Rust in `OUT_DIR`.
+//! Interface for build scripts: from a description in the crate to Rust in `OUT_DIR`.
 //!
 //! ```no_run
 //! // build.rs
@@ -101,7 +101,7 @@ impl Robot {
         }
     }
 
-    /// The scalar type behind `Real`; f64 unless chosen.
+    /// The scalar type of `Real`; f64 unless chosen.
     #[must_use]
     pub fn scalar(mut self, scalar: Scalar) -> Robot {
         self.options.scalar = scalar;
@@ -122,46 +122,49 @@ impl Robot {
         self
     }
 
-    /// Adds the modules `lanes` and `batch`: the functions for many states, so many at a time. 8 serve f64 on every present processor, 16 serve f32.
+    /// Adds the modules `lanes` and `batch`: functions for many states, in blocks of this size. 8 serve f64 on every present
+    /// processor, 16 serve f32.
     #[must_use]
     pub fn batch(mut self, lanes: usize) -> Robot {
         self.options.batch = Some(lanes);
         self
     }
 
-    /// Fuses a multiplication with the addition that alone takes its product, as `Real::mul_add`, which rounds once: the module then needs `std`,
-    /// and a processor that has the operation (`-C target-feature=+fma`, `-C target-cpu=native`), or each becomes a call many times as slow.
+    /// Fuses a multiplication with an addition that is the only user of its product, as `Real::mul_add`, which rounds once. The
+    /// module then needs `std` and a processor with the operation (`-C target-feature=+fma`, `-C target-cpu=native`). Without
+    /// such a processor each becomes a much slower call.
     #[must_use]
     pub fn fused_multiply_add(mut self) -> Robot {
         self.options.fuse = true;
         self
     }
 
-    /// The functions of the module by their names, `["gravity", "inertia_matrix_with"]`, say; all unless some are chosen. A name that no
-    /// function has ends the build. The traits of the runtime are implemented only if all functions that they need are there.
+    /// The functions of the module by their names, for instance `["gravity", "inertia_matrix_with"]`; all by default. A name that
+    /// no function has ends the build. The traits of the runtime are implemented only if all functions that they need are there.
     #[must_use]
     pub fn functions<S: Into<String>>(mut self, names: impl IntoIterator<Item = S>) -> Robot {
         self.functions = names.into_iter().map(Into::into).collect();
         self
     }
 
-    /// The name of the written files without their ending, where it is not that of the description: for the same robot in two scalars, say.
+    /// The name of the written files without their ending, where it differs from the description's: for instance for the same
+    /// robot in two scalars.
     #[must_use]
     pub fn file_stem(mut self, stem: impl Into<String>) -> Robot {
         self.stem = Some(stem.into());
         self
     }
 
-    /// Writes the face for C too: `robot.h`, and `robot_c.rs` to be included beside the module in a static or dynamic library.
+    /// Also writes the interface for C: `robot.h`, and `robot_c.rs` to be included next to the module in a static or dynamic library.
     #[must_use]
     pub fn c_abi(mut self) -> Robot {
         self.c_abi = true;
         self
     }
 
-    /// Writes `robot_ik.rs` too: all joint variables that reach a pose. It goes into a module of its own, `robot_ik` beside the module that
-    /// takes in `robot.rs` and `robot_runtime.rs`: there the implementation of the runtime's trait `InverseKinematics` looks for it.
-    /// For an arm without a construction it says why in a comment and holds nothing else, and the trait is not implemented.
+    /// Also writes `robot_ik.rs`: all joint variables that reach a pose. Include it in a module `robot_ik`, next to the module that includes
+    /// `robot.rs` and `robot_runtime.rs`. The implementation of the runtime's trait `InverseKinematics` uses this path. For an arm without a
+    /// closed-form construction the file only holds a comment with the reason, and the trait is not implemented.
     #[must_use]
     pub fn inverse_kinematics(mut self) -> Robot {
         self.inverse_kinematics = true;
@@ -175,8 +178,8 @@ impl Robot {
         self
     }
 
-    /// Is silent about kinds of warnings by their names, `["missing-inertia"]`, say, as `allow` in the description is. A name that no warning
-    /// has ends the build.
+    /// Suppresses kinds of warnings by their names, for instance `["missing-inertia"]`, like `allow` in the description. A name
+    /// that no warning has ends the build.
     #[must_use]
     pub fn allow<S: Into<String>>(mut self, kinds: impl IntoIterator<Item = S>) -> Robot {
         self.allow.extend(kinds.into_iter().map(Into::into));
@@ -199,7 +202,7 @@ impl Robot {
         let path = self.description.display();
         // One colon: cargo refuses two where the user's crate declares a Rust older than 1.77.
         println!("cargo:rerun-if-changed={path}");
-        // Reading as a string refuses what is not UTF-8.
+        // Reading as a string refuses text that is not UTF-8.
         let text =
             std::fs::read_to_string(&self.description).map_err(|error| BuildError::Read(self.description.clone(), error))?;
         let source = Source::new(path.to_string(), text);

@@ -1,5 +1,5 @@
-//! The catalogue: every function that can be emitted, in the order of the module. What each is stands beside its derivation, in
-//! [`mod@quantities`].
+//! The catalogue: every function that can be emitted, in the order of the module. Each function is defined with its derivation,
+//! in [`mod@quantities`].
 
 pub use crate::derive::derivation::METHODS;
 pub use crate::derive::model::Sizes;

@@ -1,9 +1,9 @@
 //! The last part of validation: faults of a description that only its equations show.
 //!
-//! - tau is not linear in the names that `regressor` lists together (a length, say, or a mass and its centre of mass both):
-//!   second derivatives of tau.
+//! - tau is not linear in the names that `regressor` lists together (for instance a length, or both a mass and its centre of
+//!   mass): second derivatives of tau.
 //! - No joint moves any row of the task that the file writes: rows of the Jacobian that are identically zero.
-//! - The inertia matrix B(q) is singular for every q (a massless last link without inertia, say): pivots of an elimination.
+//! - The inertia matrix B(q) is singular for every q (for instance a massless last link without inertia): pivots of an elimination.
 //!
 //! Each is decided exactly, in the prime field of the expressions' fingerprints.
 
@@ -29,8 +29,8 @@ pub use armgen_description::validate::{
     NominalValues, Occurrence, Places, Role, MAX_PARAMETERS,
 };
 
-/// The arm that `source` describes, with the places of its parts, and all there is to say about the text, in its order.
-/// There is an arm if and only if no diagnostic is an error.
+/// The arm that `source` describes, with the places of its parts, and all diagnostics, in the order of the text. There is an arm
+/// if and only if no diagnostic is an error.
 pub fn read(source: &Source) -> (Option<(Manipulator, Places)>, Diagnostics) {
     read_for(source, Scalar::F64)
 }
@@ -80,8 +80,8 @@ fn check(manipulator: &Manipulator, places: &Places, diagnostics: &mut Diagnosti
 /// Most names that are reported as nonlinear.
 const REPORTED_NAMES: usize = 50;
 
-/// Pairs of listed names, equal ones included, by which the second derivative of tau is not zero: for each name the first from itself
-/// on, as long as they are not very many.
+/// Pairs of listed names, equal ones included, for which the second derivative of tau is not zero: for each name the first from
+/// itself on. At most `REPORTED_NAMES` pairs.
 fn nonlinear_pairs(manipulator: &Manipulator, field: &Field) -> Vec<(ParameterId, ParameterId)> {
     let RegressorChoice::Names(names) = &manipulator.regressor else { return Vec::new() };
     let vector = ParameterVector::named(manipulator, names);
@@ -179,7 +179,7 @@ fn nonlinear(
     if let Some(other) = other.filter(|other| *other != parameter).and_then(listed) {
         diagnostic = diagnostic.also(other, "listed with it");
     }
-    // The most telling use: a geometric one, if there is one.
+    // Prefer a geometric use, which explains most.
     let geometric =
         |role: Role| matches!(role, Role::Length | Role::CentreOfMass | Role::Gravity | Role::Ratio | Role::RotorPosition);
     let uses = places.uses.get(parameter.0 as usize).map_or(&[][..], Vec::as_slice);
@@ -217,7 +217,7 @@ fn singular_inertia(manipulator: &Manipulator, places: &Places, joint: usize) ->
     )
 }
 
-/// A number that the equations of the arm hold is beyond the range of the scalar, though those of the file are not.
+/// A number in the equations of the arm is beyond the range of the scalar, although all numbers of the file are within it.
 pub fn product_out_of_range(places: &Places, scalar: Scalar, value: &Number) -> Diagnostic {
     let (name, size) = match scalar {
         Scalar::F64 => ("f64", value.to_f64()),

@@ -1,6 +1,6 @@
 //! From the description of a robot arm to its equations of motion, and from these to plain `no_std` Rust.
 //!
-//! The stages, in order; each type says what can no longer occur after it:
+//! The stages, in order; each type rules out a class of faults for the stages after it:
 //!
 //! | stage | from | to | can fail |
 //! |---|---|---|---|
@@ -12,8 +12,8 @@
 //!
 //! Text goes in, text comes out; only [`build_script`] touches files and environment.
 //!
-//! A project that has a robot needs [`build_script::Robot`], or [`generate`] with [`Options`]. The modules that documentation leaves out hold
-//! the stages themselves; the program and the checker stand on them, and they change as the stages do.
+//! A project that has a robot needs [`build_script::Robot`], or [`generate`] with [`Options`]. The modules hidden from the
+//! documentation hold the stages. The program and the checker use them, and they change with the stages.
 
 pub mod build_script;
 
@@ -36,7 +36,7 @@ pub mod schedule;
 #[doc(hidden)]
 pub mod show;
 
-// The algebra and the description, under the paths of the stages that stand on them.
+// The algebra and the description, under the paths that the stages use.
 #[doc(hidden)]
 pub use armgen_algebra::{exact, ring};
 #[doc(hidden)]
@@ -72,15 +72,15 @@ pub struct Generated {
     pub module: String,
     /// The implementation of the runtime's traits for it.
     pub runtime: String,
-    /// The face for C: a header, and wrappers to stand beside the module.
+    /// The interface for C: a header, and wrappers to include next to the module.
     pub c: CFace,
-    /// The exact constants behind the literals of the module, by function.
+    /// The exact constants of the literals of the module, by function.
     pub constants: BTreeMap<String, Vec<Number>>,
     /// Functions that this arm does not have.
     pub absent: Vec<Absent>,
-    /// What the texts print.
+    /// The program that all texts print.
     program: Module,
-    /// The module but for what notes are written into.
+    /// The module without the parts that receive notes.
     text: emit::rust::Text,
     origin: Origin,
     notes: Notes,
@@ -91,6 +91,11 @@ pub struct Generated {
 }
 
 impl Generated {
+    /// The name of the robot.
+    pub fn name(&self) -> &str {
+        &self.program.name
+    }
+
     /// Prints the module again, with notes in its documentation.
     pub fn annotate(&mut self, notes: &Notes) {
         self.module = self.text.documented(&self.program, &self.origin, notes);
@@ -123,8 +128,8 @@ impl Generated {
         }
     }
 
-    /// The module of inverse kinematics, `robot_ik.rs`: all joint variables that reach a pose. It stands alone, in a module of its own. For an
-    /// arm that has no construction it holds a comment that says why.
+    /// The module of inverse kinematics, `robot_ik.rs`: all joint variables that reach a pose. It is self-contained, in a module
+    /// of its own. For an arm without a construction it holds a comment with the reason.
     pub fn inverse_kinematics(&self) -> String {
         emit::rust::print_inverse_kinematics(&self.manipulator, self.program.scalar, self.construction(), &self.origin)
     }
@@ -144,25 +149,25 @@ impl Generated {
         self.construction().as_ref().is_ok_and(|found| found.redundancy.is_none())
     }
 
-    /// `robot_runtime.rs` where inverse kinematics stands in a module beside the robot's that is called `ik`: with the trait
-    /// `InverseKinematics`, or `RedundantInverseKinematics` for a redundant arm. Without it where the arm has no construction, or the
-    /// module not all functions that the other traits need.
+    /// `robot_runtime.rs` with the trait `InverseKinematics`, or `RedundantInverseKinematics` for a redundant arm. `ik` names the
+    /// sibling module of the robot's module that holds inverse kinematics. The trait is left out if the arm has no construction,
+    /// or the module lacks functions that the other traits need.
     pub fn runtime_with_inverse_kinematics(&self, ik: &str) -> String {
         self.runtime.clone() + &emit::rust::print_inverse_kinematics_trait(&self.program, self.construction(), ik)
     }
 
-    /// The face of `robot_ik.rs` for C: `robot_ik.h`, and `robot_ik_c.rs` to be included beside it; none where the arm has no construction.
+    /// The C interface of `robot_ik.rs`: `robot_ik.h`, and `robot_ik_c.rs` to be included next to it; `None` if the arm has no construction.
     pub fn inverse_kinematics_for_c(&self) -> Option<CFace> {
         emit::c::print_inverse_kinematics(&self.program, self.construction(), &self.origin)
     }
 
-    /// Inverse kinematics in C alone, `robot_ik.h`: the calls of the header of `inverse_kinematics_for_c`, with their bodies. For an arm that
-    /// has no construction it holds a comment that says why. An error is a fault of this program.
+    /// Inverse kinematics in C alone, `robot_ik.h`: the calls of the header of `inverse_kinematics_for_c`, with their bodies. For
+    /// an arm without a construction it holds a comment with the reason. An error is a fault of this program.
     pub fn inverse_kinematics_in_c(&self) -> Result<String, String> {
         emit::c::print_solver(&self.manipulator, self.program.scalar, self.construction(), &self.origin)
     }
 
-    /// What follows in `robot_test.rs`: the tests of inverse kinematics, whose module is in `file` beside.
+    /// The end of `robot_test.rs`: the tests of inverse kinematics, whose module is in `file` of the same folder.
     pub fn inverse_kinematics_test(&self, file: &str) -> String {
         emit::rust::print_inverse_kinematics_test(&self.program, self.construction(), file)
     }
@@ -188,7 +193,7 @@ pub fn programs(model: &Model, places: &Places, options: &Options) -> Result<Mod
     }
 }
 
-/// From text to text: the module if the description is valid, and all there is to say about the description.
+/// From text to text: the module if the description is valid, and all diagnostics of the description.
 pub fn generate(source: &Source, options: &Options) -> (Option<Generated>, Diagnostics) {
     let (valid, mut diagnostics) = validate::read_for(source, options.scalar);
     let Some((manipulator, places)) = valid else { return (None, diagnostics) };

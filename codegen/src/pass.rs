@@ -16,13 +16,13 @@ pub enum Pass {
     WrenchFrame,
     /// Keep the moment that C' needs relative to the link that it is at.
     RelativeMoment,
-    /// Regroup inertial parameters that a joint does not feel with those of its parent link.
+    /// Regroup inertial parameters that do not affect a joint with the parameters of its parent link.
     Grouping,
     /// Choose how much of each such parameter is regrouped.
     GroupingAmount,
     /// Rotate the axes of the last link towards its centre of mass.
     LastLinkRotation,
-    /// Try the closed form beside the recursion.
+    /// Try the closed form in addition to the recursion.
     ClosedForm,
     /// Ask for the sines and cosines of sums of angles as such.
     AngleSums,

@@ -1,4 +1,4 @@
-//! Straight-line programs: what a machine does, in order, in no language.
+//! Straight-line programs: operations in order, independent of a language.
 //!
 //! A function is a list of steps, each an operation on inputs, constants and earlier steps, and a list of outputs.
 //! Absent from a `Function` on: graphs, sharing, mathematics. The algebra's `optimise` runs before: it works on shared expressions.
@@ -24,10 +24,10 @@ pub enum Trig {
     /// The crate `libm`, angle by angle: the same bits on every machine.
     #[default]
     Libm,
-    /// The standard library, angle by angle: the emitted module then needs `std`, and its last bits are those of the platform.
+    /// The standard library, angle by angle: the emitted module then needs `std`, and its last bits depend on the platform.
     Std,
-    /// All angles of a function together in vector instructions, within 1 unit in the last place, the same bits on every machine; those of large
-    /// angles (beyond 65536 rad in f64, 128 rad in f32) from the crate `libm`.
+    /// All angles of a function together in vector instructions, within 1 unit in the last place, the same bits on every machine.
+    /// Large angles (beyond 65536 rad in f64, 128 rad in f32) use the crate `libm`.
     Fast,
 }
 
@@ -92,7 +92,7 @@ pub struct Output {
 /// A function.
 #[derive(Clone, Debug)]
 pub struct Function {
-    /// What it computes.
+    /// The quantity that it computes.
     pub quantity: &'static Quantity,
     /// Whether it takes the parameters at run time.
     pub with_parameters: bool,
@@ -128,8 +128,8 @@ impl Function {
         uses
     }
 
-    /// Which steps are products that a sum or a difference takes in one fused operation, which rounds once: those that nothing else uses, and of
-    /// two such the left one.
+    /// The products that a sum or a difference fuses into one operation, which rounds once: products without another use, and the
+    /// left one of two.
     pub fn products_in_sums(&self) -> Vec<bool> {
         let mut fused = vec![false; self.steps.len()];
         if !self.fuse {
@@ -203,7 +203,7 @@ pub struct Module {
 }
 
 impl Module {
-    /// The same without fused operations, for languages that have none.
+    /// The same without fused operations, for languages without them.
     pub fn unfused(&self) -> Module {
         let functions = self.functions.iter().map(|function| Function { fuse: false, ..function.clone() }).collect();
         Module { functions, ..self.clone() }
@@ -214,7 +214,7 @@ impl Module {
         self.functions.iter().any(|function| function.products_in_sums().contains(&true))
     }
 
-    /// What the dimensions of its functions are.
+    /// The dimensions of its functions.
     pub fn sizes(&self) -> Sizes {
         Sizes {
             dof: self.joints.len(),

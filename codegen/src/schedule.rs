@@ -23,7 +23,7 @@ pub use selection::{Selection, UnknownFunctions};
 /// Choices of generation.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Options {
-    /// The scalar type behind `Real`.
+    /// The scalar type of `Real`.
     pub scalar: Scalar,
     /// Where sines and cosines come from.
     pub trig: Trig,
@@ -37,7 +37,7 @@ pub struct Options {
     pub fuse: bool,
 }
 
-/// A closed form with so many times the operations of the recursion is not looked at further.
+/// A closed form with this many times the operations of the recursion is given up.
 const CLOSED_FORM_FACTOR: usize = 2;
 
 /// How many nodes the search for the cheapest derivation of a quantity may form.

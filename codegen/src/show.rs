@@ -1,16 +1,16 @@
 //! Every quantity of an arm as people read it: plain text, LaTeX, JSON.
 //!
-//! A quantity is one matrix; a vector has one column, a scalar one entry, the frames of the links are one matrix each. It has up to three
-//! forms: the closed form, whose entries are sums of sines and cosines of integer combinations of the joint angles, where no reciprocal
-//! and no more than 300 terms stand in one,
+//! A quantity is one matrix; a vector has one column, a scalar one entry, and each link frame is one matrix. It has up to three
+//! forms. In the closed form the entries are sums of sines and cosines of integer combinations of the joint angles. It exists if
+//! no entry needs a reciprocal or more than 300 terms.
 //!
 //! ```text
 //! b11 = 10*cos(q2) + 10763/500
 //! ```
 //!
-//! and numbered steps, each using earlier ones only, of the recursion over the links as it stands and with the operations saved that the
-//! emitted function saves. A closed form that fits a table is shown as one, else the form with the fewest characters, unless another is
-//! asked for. Nothing is ever left out.
+//! The other forms are numbered steps, each of which uses only earlier ones. They write out the plain recursion over the links,
+//! and the recursion with the savings of the emitted function. By default a closed form that fits a table is shown, else the form
+//! with the fewest characters. No term is ever left out.
 //!
 //! ```text
 //! show.rs         sheets of quantities
@@ -66,7 +66,7 @@ pub enum Form {
     /// The closed form where it fits a table; else the one with the fewest characters.
     #[default]
     Shortest,
-    /// The closed form where there is one, whatever its length; else steps.
+    /// The closed form if it exists, whatever its length; else steps.
     Closed,
     /// Numbered steps.
     Steps,
@@ -77,7 +77,7 @@ pub enum Form {
 pub struct Style {
     /// Which form.
     pub form: Form,
-    /// Constants as decimals of so many digits, 1 to 17; none: exactly.
+    /// Constants as decimals with this many digits, 1 to 17; `None` for exact constants.
     pub digits: Option<u8>,
 }
 
@@ -105,7 +105,7 @@ pub struct Shown {
     pub rows: usize,
     /// Number of columns.
     pub columns: usize,
-    /// What the columns stand for, where they have names of their own.
+    /// Names of the columns, where they have their own.
     pub column_names: Option<Vec<String>>,
     /// The entries, row by row.
     pub content: Content,
@@ -113,7 +113,7 @@ pub struct Shown {
     pub parameters: Vec<String>,
     /// Stribeck velocities of the joints; 1 where there is no such friction.
     pub velocities: Vec<Number>,
-    /// Of the determinant: its factors, and where each is zero; of minors the factors that they share.
+    /// For the determinant, its factors and where each is zero; for minors, the factors that they share.
     pub factors: Option<Vec<Factor>>,
     /// Digits of constants; none: exactly.
     pub digits: Option<u8>,
@@ -128,7 +128,7 @@ pub enum Content {
     Closed(Vec<NormalForm>),
     /// Expressions that share steps.
     Program(Box<Derivation>),
-    /// What is left of the minors of the task Jacobian once the factors that they share are taken out.
+    /// The minors of the task Jacobian without their common factors.
     Minors(Vec<Product>),
 }
 
@@ -168,7 +168,7 @@ impl Sheet {
         [nominal, Sheet::of(model, items, named)]
     }
 
-    /// Of what was found for each item, or why there is none of it.
+    /// The sheet of the result for each item, or of the reason why it is missing.
     fn of(model: &Model, items: &[Item], all: Vec<Result<Vec<Shown>, String>>) -> Sheet {
         let mut seen = BTreeSet::new();
         let mut sheet = Sheet { robot: model.manipulator.name.clone(), quantities: Vec::new(), absent: Vec::new() };
@@ -191,7 +191,7 @@ impl Shown {
         !matches!(self.content, Content::Program(_))
     }
 
-    /// What is left of the minors of the task Jacobian, where these are shown.
+    /// The minors of the task Jacobian without their common factors, where they are shown.
     fn minors(&self) -> Option<&[Product]> {
         if let Content::Minors(left) = &self.content {
             Some(left)
@@ -209,13 +209,13 @@ impl Shown {
         self.table(self.plain_text()).is_some()
     }
 
-    /// How many characters the steps and the entries take, spaces apart; of a symmetric matrix those of the upper half.
+    /// Number of characters of the steps and the entries without spaces; for a symmetric matrix only the upper half counts.
     fn length(&self) -> usize {
         let Formulas { steps, entries } = self.plain_text();
         let symmetric = self.is_symmetric();
         let shown = |k: &usize| !symmetric || k / self.columns <= k % self.columns;
         let entries = (0..entries.len()).filter(shown).map(|k| entries[k].as_str()).filter(|entry| *entry != "0");
-        // What stands around a formula is a name and an equals sign.
+        // A name and an equals sign surround a formula.
         let count = |text: &str| text.chars().filter(|c| *c != ' ').count();
         steps.iter().map(|(name, formula)| name.len() + count(formula) + 5).chain(entries.map(|entry| count(entry) + 8)).sum()
     }

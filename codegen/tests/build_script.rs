@@ -1,4 +1,4 @@
-//! The face for a build script: what it writes, and why it writes nothing.
+//! The interface for build scripts: its output, and its errors.
 //!
 //! One test, since a build script learns its folder from the environment.
 
@@ -62,7 +62,7 @@ fn a_build_script_gets_what_it_asks_for_or_the_reason() {
             && module.contains("Real::mul_add(")
     );
 
-    // Nothing chosen: named after its description, without the face for C.
+    // By default, named after its description, without the C interface.
     let written = Robot::new(&scara).try_generate().expect("a valid description");
     let files: Vec<String> = written.iter().map(|file| read(file).0).collect();
     assert_eq!(files, ["scara.rs", "scara_runtime.rs"]);

@@ -60,7 +60,7 @@ fn classes_of_robots() {
     }
 }
 
-/// Rows of a position that the joints leave alone: a plane, a sphere, a joint that is given. What is asked for instead has a construction.
+/// Rows of a position that the joints do not affect: a plane, a sphere, a given joint. The suggested task has a construction.
 #[test]
 fn positions_of_too_many_rows_are_refused() {
     let q = "pi/2";
@@ -93,7 +93,7 @@ fn names(text: &str, joint: usize) -> bool {
     words.any(|word| word.trim_start_matches('q') == joint.to_string())
 }
 
-/// Slides that stay parallel move the end effector along one line: no posture stands alone.
+/// Slides that stay parallel move the end effector along one line: no posture is isolated.
 #[test]
 fn parallel_slides_have_no_construction() {
     let rows = |alpha| {
@@ -134,7 +134,7 @@ fn nearly_zero_is_not_zero() {
     assert!(nested.starts_with("spherical triple"), "{nested}");
 }
 
-/// Compiles what is emitted and runs the judge: it asks every module for the postures of thousands of poses.
+/// Compiles the emitted modules and runs the judge, which computes the postures of thousands of poses with every module.
 #[test]
 #[ignore = "wide"]
 fn emitted_modules_find_every_posture() {
@@ -196,7 +196,7 @@ fn fewer_joints_than_rows() {
     project.run();
 }
 
-/// Joints that move the end effector alike at every pose: no posture stands alone.
+/// Joints that move the end effector alike at every pose: no posture is isolated.
 #[test]
 fn joints_that_can_always_move_are_told() {
     let rows = [(R, "0.5", "0", "0", "0"), (R, "0.4", "0", "0", "0"), (R, "0.2", "0", "0", "0"), (R, "0.2", "0", "0", "0")];

@@ -1,4 +1,4 @@
-//! The generator from outside. One program for all tests of the crate: a file beside this one is a module here.
+//! The generator from outside. One program for all tests of the crate: the other files of this folder are its modules.
 
 mod build_script;
 mod inverse_kinematics;

@@ -9,7 +9,7 @@ fn name(sum: AngleSum) -> String {
     Name::SineOrCosine(Symbol::SineOf(sum)).text()
 }
 
-/// C and MATLAB tell names apart by 63 characters.
+/// C and MATLAB distinguish names by their first 63 characters.
 #[test]
 fn names_of_sums_of_many_joints_are_told_apart() {
     let mut sums = BTreeMap::new();

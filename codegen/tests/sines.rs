@@ -14,7 +14,7 @@ use reference::{Format, Reference, F32, F64};
 
 /// The promise of the documentation.
 const PROMISE: f64 = 1.0;
-/// What the analysis of the documentation allows in f64.
+/// Bound of the error analysis in the documentation, f64.
 const BOUND: f64 = 0.9;
 /// Arguments in each range: `cargo run --release -p armgen-codegen --example sine_errors` takes a million.
 const COUNT: usize = 4000;
@@ -67,7 +67,7 @@ fn an_angle_has_the_same_sine_beside_any_others() {
     }
 }
 
-/// By itself, without its cosine or its sine, and beside others: the same bits.
+/// An angle has the same bits by itself, without its cosine or its sine, and together with others.
 #[test]
 fn an_angle_has_the_same_sine_however_it_is_asked_for() {
     let special = [0.0, emitted::f64::RANGE, 1e9, 1e300];
@@ -112,8 +112,8 @@ fn an_angle_in_f32_has_the_same_sine_in_every_lane() {
     }
 }
 
-/// Angles at which r is next to pi/4, e as large as it becomes and all roundings point the same way: found by a search, where the form
-/// r - (e + r^3 P), without the factor of e, is 0.997 to 0.999996 units off.
+/// Angles at which r is next to pi/4, e is largest and all roundings have the same sign, found by a search. The form r - (e + r^3
+/// P), without the factor of e, is 0.997 to 0.999996 units off there.
 #[test]
 fn the_worst_angles_that_a_search_found_are_within_their_bound() {
     let reference = Reference::new();
@@ -125,7 +125,7 @@ fn the_worst_angles_that_a_search_found_are_within_their_bound() {
     }
 }
 
-/// Of fewer angles than lanes all have theirs, whether the last pairs of lanes are left out or not, and one is beyond the range or none.
+/// Fewer angles than lanes all have their sines, with or without the last pairs of lanes and with or without an angle beyond the range.
 #[test]
 fn fewer_angles_than_lanes_have_their_sines() {
     for third in [0.7, 1e9] {
@@ -160,7 +160,7 @@ fn zeros_keep_their_sign_and_the_smallest_numbers_their_bits() {
     }
 }
 
-/// Every so many f32 up to the largest; the example `sine_errors` takes every one.
+/// Samples f32 in fixed steps up to the largest; the example `sine_errors` takes every one.
 #[test]
 fn sines_in_f32_are_within_an_ulp_for_every_size_of_angle() {
     const STEP: usize = 100_003;

@@ -1,7 +1,7 @@
-//! Slips that are made in describing an arm, each made once in an arm without a fault, and whether what is said names the reason.
+//! Typical mistakes in the description of an arm, each made once in an arm without a fault: does the diagnostic name the reason?
 //!
-//! A slip is a text of the file and what stands there instead. All words of its last column must occur in what is said first, message,
-//! help and all; a slip that cannot be seen has none, and stands here so that it is counted.
+//! A slip replaces a text of the file by another. All words of its last column must occur in the first diagnostic, help included.
+//! A slip that cannot be detected has no words; it is listed so that it is counted.
 
 use armgen_codegen::diagnostic::Colour;
 use armgen_codegen::source::Source;
@@ -9,7 +9,7 @@ use armgen_codegen::validate;
 
 const ARM: &str = include_str!("slips/arm.yaml");
 
-/// What has slipped, the text, what stands there instead, and what must be said.
+/// Name of the slip, the text, its replacement, and the words of the diagnostic.
 type Slip = (&'static str, &'static str, &'static str, &'static [&'static str]);
 
 const SLIPS: [Slip; 68] = [

@@ -1,4 +1,4 @@
-//! Files of the project that are written from the catalogue of emitted functions, and must be what it says.
+//! Files of the project that are generated from the catalogue of emitted functions must match it.
 //!
 //! A change that is meant is accepted by `INSTA_UPDATE=always cargo test -p armgen-codegen --test all written_files`.
 

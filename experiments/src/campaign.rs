@@ -1,5 +1,5 @@
-//! Many experiments at once: all sampled loops are analysed first, each linearised and followed once along its motion without noise, then
-//! everything moves, on all processors.
+//! Many experiments at once. First, all sampled loops are analysed: each is linearised, and simulated once along its motion without
+//! noise. Then all experiments run, on all processors.
 
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::Mutex;
@@ -9,7 +9,7 @@ use crate::judge::{judge, Line};
 use crate::model::{Body, Ended, Experiment, Record};
 use crate::run::{Arm, Run};
 
-/// One experiment and what is known of it.
+/// An experiment with its preparation and results.
 pub struct Job<'a> {
     experiment: &'a Experiment,
     arm: &'a dyn Arm,
@@ -25,7 +25,7 @@ impl std::fmt::Debug for Job<'_> {
 }
 
 impl<'a> Job<'a> {
-    /// An experiment that is to be run on this arm.
+    /// An experiment to run on this arm.
     pub fn new(experiment: &'a Experiment, arm: &'a dyn Arm) -> Job<'a> {
         Job { experiment, arm, prepared: None, record: Record::default(), figures: Vec::new() }
     }
@@ -35,27 +35,27 @@ impl<'a> Job<'a> {
         self.experiment
     }
 
-    /// What the run left behind; nothing before it.
+    /// The record of the run; empty before it.
     pub fn record(&self) -> &Record {
         &self.record
     }
 
-    /// Analyses the stability of the sampled loop, at rest and along its motion without noise; nothing is recorded yet.
+    /// Analyses the stability of the sampled loop, at rest and along its motion without noise. It records nothing.
     pub fn prepare(&mut self) {
         self.prepared = Some(self.arm.prepare(self.experiment));
     }
 
-    /// Warnings of settings that are possible and probably mistakes, before anything moves.
+    /// Warnings about settings that are valid but probably mistakes, before the run.
     pub fn implausible_settings(&self) -> Vec<String> {
         self.arm.implausible_settings(self.experiment)
     }
 
-    /// What has to be said of its loop before anything moves.
+    /// The warning about an unstable loop, after `prepare`.
     pub fn warning(&self) -> Option<String> {
         self.prepared.as_ref()?.as_ref().ok()?.warning()
     }
 
-    /// Runs and draws it, prepared or not.
+    /// Runs the experiment and draws its figures; prepares it first if necessary.
     pub fn run(&mut self) {
         let prepared = self.prepared.take().unwrap_or_else(|| self.arm.prepare(self.experiment));
         self.record = match prepared {
@@ -75,7 +75,7 @@ impl<'a> Job<'a> {
         OutputFile { name: format!("{}.csv", self.experiment.name), text: self.record.csv() }
     }
 
-    /// The lines of the table; a run that ended early is one of them, unless an expectation is about the number that tells of this end.
+    /// The rows of the table. An early end adds a row, unless an expectation concerns the quantity that reports this end.
     pub fn lines(&self) -> Vec<Line> {
         let expect = &self.experiment.expect;
         let mut lines: Vec<Line> = expect.iter().map(|expectation| judge(expectation, &self.record)).collect();
@@ -86,7 +86,7 @@ impl<'a> Job<'a> {
         lines
     }
 
-    /// Roughly how long it takes, in steps.
+    /// Relative duration of the run.
     fn effort(&self) -> u64 {
         match &self.experiment.body {
             Body::Postures(_) => 0,
@@ -104,7 +104,7 @@ pub fn groups(jobs: &[Job<'_>]) -> Vec<OutputFile> {
     draw::groups(&all, arm.robot())
 }
 
-/// Does `work` on every job, on all processors; the longest first.
+/// Calls `work` for every job on all processors, the longest jobs first.
 pub fn in_parallel<'a>(jobs: &mut [Job<'a>], work: impl Fn(&mut Job<'a>) + Sync) {
     let mut queue: Vec<&mut Job<'a>> = jobs.iter_mut().collect();
     queue.sort_by_key(|job| std::cmp::Reverse(job.effort()));

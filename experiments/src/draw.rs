@@ -2,16 +2,16 @@
 //!
 //! ```text
 //! svg.rs      lines, texts, clipping: a white page with dark ink
-//! plot.rs     panels with axes, ticks, legends; curves thinned to what can be seen
-//! labels.rs   texts beside points, where they hide least
+//! plot.rs     panels with axes, ticks, legends; curves thinned to the visible points
+//! labels.rs   labels near points, where they hide least
 //! arm.rs      postures with ellipsoids, the workspace
-//! path.rs     the path as planned and as traced, profiles
+//! path.rs     the planned and the traced path, profiles
 //! run.rs      errors, torques, estimates over time
 //! compare.rs  the members of a group side by side
 //! ```
 //!
-//! The SVG is written here: a plotting library is compiled for a minute, places points on whole pixels, and a path that misses by a tenth of a
-//! millimetre shows that.
+//! This module writes the SVG itself. A plotting library takes a minute to compile and rounds points to whole pixels, which would show
+//! a path error of a tenth of a millimetre.
 
 mod arm;
 mod compare;
@@ -27,16 +27,16 @@ use crate::model::{Body, Experiment, Record, Robot};
 
 pub use run::demonstration;
 
-/// A file that is to be written.
+/// A file to write.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct OutputFile {
     /// Its name, without a folder.
     pub name: String,
-    /// What stands in it.
+    /// Its content.
     pub text: String,
 }
 
-/// The figures of one experiment.
+/// The figures of an experiment.
 pub fn experiment(experiment: &Experiment, record: &Record, robot: &Robot) -> Vec<OutputFile> {
     let Experiment { name, title, body, .. } = experiment;
     let figure = |suffix: &str, text: String| OutputFile { name: format!("{name}{suffix}.svg"), text };

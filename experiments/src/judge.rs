@@ -1,17 +1,17 @@
-//! What came out, beside what was expected.
+//! Comparison of results with expectations.
 
 use crate::model::{digits, number, Expectation, Record, Take, Target, Unit};
 
-/// One line of the table of results.
+/// A row of the table of results.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Line {
-    /// The quantity, and how it was taken: `max |e_z| in [5, 20] s`.
+    /// The quantity and its evaluation: `max |e_z| in [5, 20] s`.
     pub what: String,
     /// The name of the quantity.
     pub name: String,
-    /// What it is, in words; empty of what is no quantity.
+    /// Explanation in words; empty if the row concerns no quantity.
     pub meaning: &'static str,
-    /// The value found, formatted.
+    /// The measured value, formatted.
     pub found: String,
     /// Its unit.
     pub unit: Unit,
@@ -22,7 +22,7 @@ pub struct Line {
 }
 
 impl Line {
-    /// A line for what is not a number, and is not as it should be.
+    /// A row for an unmet condition that is not a number.
     pub fn unmet(what: &str, found: String, expected: &str) -> Line {
         Line {
             what: what.into(),
@@ -40,12 +40,12 @@ impl Line {
 pub fn judge(expectation: &Expectation, record: &Record) -> Line {
     let Expectation { channel, take, target } = expectation;
     let found = find(expectation, record);
-    // As many digits as the tolerance can tell apart.
+    // As many digits as the tolerance resolves.
     let count = match *target {
         Target::Near { value, tolerance, .. } if value != 0.0 => {
             (2.0 - (tolerance / value.abs()).log10().floor()).clamp(4.0, 15.0) as i32
         }
-        // As many as tell it from its bound.
+        // As many digits as distinguish it from its bound.
         Target::AtLeast(bound) | Target::AtMost(bound) => {
             (4..15).find(|count| digits(found, *count) != digits(bound, *count)).unwrap_or(15)
         }
@@ -73,9 +73,9 @@ pub fn judge(expectation: &Expectation, record: &Record) -> Line {
     Line { what, name, meaning, found: digits(found, count), unit, expected, met }
 }
 
-/// The number that is taken of the record; NaN where there is none, which meets nothing.
+/// The value for an expectation; NaN if the record has no such value, which meets no expectation.
 fn find(Expectation { channel, take, .. }: &Expectation, record: &Record) -> f64 {
-    // Half a microsecond: times are multiples of the period, not always representable.
+    // Half a microsecond: times are multiples of the period, which may have no exact representation.
     const SLACK: f64 = 5e-7;
     let log = record.log();
     let column = record.channels().iter().position(|known| known.quantity == channel.quantity);
@@ -83,7 +83,7 @@ fn find(Expectation { channel, take, .. }: &Expectation, record: &Record) -> f64
         let row = log.rows().find(|row| row[0] >= t - SLACK);
         row.zip(column).map_or(f64::NAN, |(row, column)| row[column])
     };
-    // Of a run that ended early nothing is known of the whole interval.
+    // A run that ended early has no value for an interval that it did not finish.
     let whole = |from: f64, to: f64, found: &dyn Fn(&dyn Fn(&[f64]) -> bool) -> Option<f64>| {
         let within = |row: &[f64]| row[0] >= from - SLACK && row[0] <= to + SLACK;
         let reaches = log.rows().last().is_some_and(|row| row[0] >= to - SLACK);
@@ -99,7 +99,7 @@ fn find(Expectation { channel, take, .. }: &Expectation, record: &Record) -> f64
         Take::Peak(a, b) => whole(a, b, &|within| log.peak(name, within)),
         Take::Highest(a, b) => whole(a, b, &|within| log.highest(name, within)),
         Take::Lowest(a, b) => whole(a, b, &|within| log.lowest(name, within)),
-        // No exponential goes through 0 or changes its sign: there is no rate then, and not an infinite one.
+        // An exponential has no zero and no change of sign. Such data have no rate, not an infinite rate.
         Take::Decay(a, b) => Some((at(a) / at(b)).ln() / (b - a)).filter(|rate| rate.is_finite()).unwrap_or(f64::NAN),
     }
 }
@@ -109,7 +109,7 @@ mod tests {
     use super::*;
     use crate::model::{Channel, Quantity};
 
-    /// What a run of four samples, 0 to 3 s, is judged to be; the values at these times are given.
+    /// The result for a run of four samples, 0 to 3 s, with these values.
     fn judged(values: [f64; 4], take: Take, target: Target) -> Line {
         let channel = |quantity, name: &str, unit| Channel { quantity, name: name.into(), unit };
         let speed = channel(Quantity::Speed, "speed", Unit::MetrePerSecond);

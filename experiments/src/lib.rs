@@ -1,16 +1,16 @@
-//! Experiments as data: files in YAML that say how a robot moves and what should come out.
+//! Experiments as data: YAML files that describe a robot's motion and the expected results.
 //!
 //! ```text
-//! model/     what an experiment is, what a run leaves behind: typed channels, records, expectations
-//! read/      text -> Experiment, or every fault with its place
-//! run/       Experiment -> Record, generic over the robot; `Arm` is one robot with all its runs
+//! model/     experiments and their results: typed channels, records, expectations
+//! read/      text -> Experiment, or every fault with its position
+//! run/       Experiment -> Record, generic over the robot; `Arm` is a robot with all its runs
 //! judge.rs   Record and Expectation -> a line of the table
 //! draw/      Experiment and Record -> SVG
 //! campaign   many experiments at once: prepare, warn, run, judge, draw
 //! ```
 //!
-//! Each knows those above it and none below; `campaign` knows all. No robot is compiled into this crate, and it touches no files: the
-//! texts of files come in by a function that the caller gives, figures and logs go out as texts.
+//! Each module depends only on those above it; `campaign` depends on all. No robot is compiled into this crate, and it accesses no files:
+//! the caller passes a function that returns texts of files, and receives figures and logs as texts.
 
 pub mod campaign;
 pub mod draw;

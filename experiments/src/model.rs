@@ -1,4 +1,4 @@
-//! What an experiment is, and what a run leaves behind.
+//! Data types of experiments and of their results.
 
 mod channel;
 mod expectation;

@@ -1,12 +1,12 @@
-//! Experiment files: text -> [`Experiment`], or every fault with its place.
+//! Experiment files: text -> [`Experiment`], or every fault with its position.
 //!
 //! ```text
 //! values.rs        numbers, durations, lists and words under their keys
-//! postures.rs path.rs clik.rs branch.rs control.rs expectation.rs     one part of a file each
+//! postures.rs path.rs clik.rs branch.rs control.rs expectation.rs     a part of the file each
 //! code.rs          kinds of faults
 //! ```
 //!
-//! Absent from here on: YAML, wrong lengths, gains that are not positive, paths that cannot be planned, quantities that do not exist.
+//! After this module there are no YAML, wrong lengths, non-positive gains, unplannable paths or unknown quantities.
 
 mod branch;
 mod clik;
@@ -31,28 +31,28 @@ use values::{Allowed, Reader};
 pub use code::{Code, SHARED};
 pub use path::motion;
 
-/// The longest text that is read, bytes.
+/// The length of the longest accepted text, bytes.
 pub const MAX_TEXT: usize = yaml::MAX_TEXT;
-/// Samples of a run: a minute at 30 kHz.
+/// Maximum number of samples in a run: a minute at 30 kHz.
 const MAX_SAMPLES: u128 = 2_000_000;
 
-/// Gives the text of a file that an experiment names.
+/// Returns the text of a file that an experiment names.
 pub type Open<'o> = &'o dyn Fn(&Path) -> std::io::Result<String>;
 
-/// What a file came to.
+/// The result of reading a file.
 #[derive(Debug)]
 pub enum Parsed {
-    /// It can be run.
+    /// A valid experiment.
     Experiment(Box<Experiment>),
-    /// It is for this robot, another one.
+    /// An experiment for the robot with this name.
     OtherRobot(String),
-    /// It is a path, which experiments name.
+    /// A path, to which experiments refer.
     Path,
-    /// It is faulty: each text, its own or that of its path, with what is wrong in it.
+    /// Faulty: each text, its own or its path's, with its diagnostics.
     Faulty(Vec<(Source, Diagnostics)>),
 }
 
-/// Reads an experiment for this robot from its text; a path file is looked up beside `file`.
+/// Reads an experiment for this robot; the path of a path file is relative to the folder of `file`.
 pub fn experiment(file: &Path, source: &Source, robot: &Robot, open: Open<'_>) -> Parsed {
     let mut diagnostics = Diagnostics::new();
     let root = yaml::read(source, &mut diagnostics);
@@ -89,21 +89,21 @@ pub fn experiment(file: &Path, source: &Source, robot: &Robot, open: Open<'_>) -
     }
 }
 
-/// Path files beside an experiment's file.
+/// Path files relative to an experiment's file.
 struct Paths<'p> {
     file: &'p Path,
     open: Open<'p>,
-    /// The text of a path that is faulty, and its faults.
+    /// The text of a faulty path, and its diagnostics.
     faulty: &'p mut Option<(Source, Diagnostics)>,
 }
 
-/// The place of a key that only descriptions of robots have.
+/// The position of a key that occurs only in robot descriptions.
 fn key_of_a_robot(root: &Node) -> Option<Span> {
     let Kind::Mapping(entries) = &root.kind else { return None };
     entries.iter().find(|(key, _)| ["joints", "convention"].contains(&key.value.as_str())).map(|(key, _)| key.span)
 }
 
-/// Whether it is the text of a path, which experiments name.
+/// Whether the text is a path, to which experiments refer.
 fn is_path(root: &Node) -> bool {
     let Kind::Mapping(entries) = &root.kind else { return false };
     let has = |name: &str| entries.iter().any(|(key, _)| key.value == name);

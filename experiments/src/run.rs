@@ -1,16 +1,16 @@
-//! Runs: what comes of an experiment on a robot.
+//! Runs: experiments on a robot, and their records.
 //!
 //! ```text
-//! instance.rs      one robot: its data, its functions, and the runs compiled for it
-//! implausible_settings.rs      what can be seen before anything moves
-//! start.rs         where a run begins
-//! solver.rs        the inverse kinematics of a robot, where it has one
-//! postures.rs clik.rs branch.rs control.rs      one kind of run each; path.rs needs no robot
-//! demonstration.rs for a robot without experiments: from posture to posture within its limits
+//! instance.rs      a robot: its data, its functions, and the runs compiled for it
+//! implausible_settings.rs      warnings before a run
+//! start.rs         the start of a run
+//! solver.rs        the inverse kinematics of a robot, if it has any
+//! postures.rs clik.rs branch.rs control.rs      the kinds of runs; path.rs needs no robot
+//! demonstration.rs motion between postures within the limits, for a robot without experiments
 //! ```
 //!
-//! [`Arm`] separates generic code from the rest: the runs behind it are generic over the robot and its numbers of joints, rows and
-//! parameters, and are compiled where an [`Instance`] is made; whoever holds an `Arm` is compiled without the robot.
+//! [`Arm`] hides the generic code. The runs are generic over the robot and its numbers of joints, rows and parameters; they are compiled
+//! where an [`Instance`] is made. Users of an `Arm` compile without the robot.
 
 mod branch;
 mod clik;
@@ -28,42 +28,42 @@ pub use solver::{Probe, Solver, Solves, SolvesNot};
 
 use crate::model::{Experiment, Record, Robot};
 
-/// A robot on which experiments run.
+/// A robot that runs experiments.
 pub trait Arm: Sync {
-    /// What is known of it.
+    /// The data of the robot.
     fn robot(&self) -> &Robot;
 
-    /// What can be seen of an experiment before anything moves, and hardly is meant: a start outside the limits, a path beyond reach, a
-    /// start off the path.
+    /// Warnings before a run about settings that are probably mistakes: a start outside the limits, a path out of reach, a start off the
+    /// path.
     fn implausible_settings(&self, experiment: &Experiment) -> Vec<String>;
 
-    /// What is known of a run before anything moves.
+    /// Prepares and analyses a run.
     ///
     /// # Errors
-    /// Why there is no run, in words.
+    /// The reason why the run is impossible, in words.
     fn prepare<'a>(&'a self, experiment: &'a Experiment) -> Result<Box<dyn Run + 'a>, String>;
 
-    /// A motion that shows the arm, whatever it is.
+    /// A motion that shows the arm, for any arm.
     ///
     /// # Errors
-    /// Why it cannot be run, in words.
+    /// The reason why the motion is impossible, in words.
     fn demonstrate(&self) -> Result<Demonstration, String>;
 }
 
-/// What a demonstration leaves behind.
+/// The result of a demonstration.
 #[derive(Clone, Debug)]
 pub struct Demonstration {
-    /// What was done, a line each.
+    /// A summary of the motion, in lines.
     pub summary: Vec<String>,
     /// All samples.
     pub record: Record,
-    /// Why the motion is not as expected, if it is not.
+    /// The deviation from the expected motion, if any.
     pub fault: Option<String>,
 }
 
-/// A run that is prepared.
+/// A prepared run.
 pub trait Run: Send {
-    /// What has to be said before anything moves.
+    /// A warning before the run.
     fn warning(&self) -> Option<String> {
         None
     }
@@ -72,7 +72,7 @@ pub trait Run: Send {
     fn run(self: Box<Self>) -> Record;
 }
 
-/// A run of which nothing is known beforehand.
+/// A run without preparation.
 struct Unprepared<F>(F);
 
 impl<F: FnOnce() -> Record + Send> Run for Unprepared<F> {

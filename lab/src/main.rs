@@ -1,8 +1,8 @@
-//! The lab: the robot of robot.yaml, compiled, moves along experiments.
+//! The lab: runs experiments on the compiled robot of robot.yaml.
 //!
-//! The controllers and the simulation are generic over the robot: their machine code is made here. So an edit of robot.yaml compiles
-//! `armgen-generated` and this crate again, and nothing that reads, judges or draws. The program armgen does not depend on this crate:
-//! it builds while robot.yaml is faulty.
+//! The controllers and the simulation are generic over the robot, so their machine code belongs to this crate. An edit of robot.yaml
+//! therefore recompiles `armgen-generated` and this crate, but not the crates that read, evaluate or draw. The program armgen does not
+//! depend on this crate, so it builds even with a faulty robot.yaml.
 
 use std::path::PathBuf;
 use std::process::ExitCode;

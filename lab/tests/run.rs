@@ -1,8 +1,7 @@
-//! `lab run` as its users run it: the table, the files, the exit codes.
+//! `lab run` from its users' side: the table, the files, the exit codes.
 //!
-//! The experiments of these tests are written for the robot that the program was built with, whichever it is, and expect what is true of any:
-//! so they are run, and not skipped, after robot.yaml has been edited. What the experiments of the repository give is tested in
-//! `tests/experiments`.
+//! The tests generate experiments for the robot of the program, whose expectations hold for any robot. They still run after an edit of
+//! robot.yaml. `tests/experiments` tests the experiments of the repository.
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -17,7 +16,7 @@ fn run(folder: &Path, files: &[&Path]) -> Output {
     Command::new(env!("CARGO_BIN_EXE_lab")).arg("run").args(files).arg("--out").arg(&out).output().expect("the program runs")
 }
 
-/// The robot that the program was built with.
+/// The robot of the program.
 fn robot() -> Robot {
     armgen_experiments::instance!(armgen_generated).robot().clone()
 }
@@ -29,7 +28,7 @@ fn folder(name: &str) -> PathBuf {
     folder
 }
 
-/// A file with an experiment for this robot, of which one expectation is w >= `w`.
+/// An experiment file for this robot, with the expectation w >= `w`.
 fn experiment(folder: &Path, name: &str, robot: &str, w: f64) -> PathBuf {
     let arm = self::robot();
     let q = vec!["0.3"; arm.dof()].join(", ");
@@ -89,7 +88,7 @@ fn a_file_that_is_not_there_gives_code_2() {
     assert_eq!(run(&folder("run_absent"), &[Path::new("experiments/absent.yaml")]).status.code(), Some(2));
 }
 
-/// What is wrong with a path's text is said of it, also where its end, which is not read, falls within a character.
+/// The message describes the fault of a path's text, even if the read limit cuts a multi-byte character.
 #[test]
 fn a_path_that_is_too_long_or_no_text_is_said_to_be_that() {
     let folder = folder("run_path");
@@ -122,13 +121,13 @@ fn an_experiment_for_another_robot_is_skipped_and_said_to_be() {
     assert_eq!(output.status.code(), Some(0));
     assert!(err(&output).contains("1 experiment skipped: for the robot `someone_else`"), "{}", err(&output));
     assert!(out(&output).contains("2 of 2 results as expected"), "{}", out(&output));
-    // Alone it leaves the arm to its demonstration.
+    // Without its own experiments, the arm runs its demonstration.
     let output = run(&folder, &[&other]);
     assert_eq!(output.status.code(), Some(0), "{output:?}");
     assert!(out(&output).contains("demonstration.svg"), "{}", out(&output));
 }
 
-/// The help's example is all files of a folder; paths stand there as well.
+/// The help's example passes all files of a folder, including paths.
 #[test]
 fn a_path_is_no_experiment_and_no_file_that_is_read_is_written_over() {
     let folder = folder("run_with_path");
@@ -146,7 +145,7 @@ fn a_path_is_no_experiment_and_no_file_that_is_read_is_written_over() {
     let output = run(&folder, &[&path, &second]);
     assert_eq!(output.status.code(), Some(1), "{output:?}");
     assert!(err(&output).contains("path.yaml and 1 more are paths, not experiments"), "{}", err(&output));
-    // A figure of `own` is called as the log of `own_postures`; as a file it may be read, too.
+    // A figure of `own` has the name of this input file, which must not be overwritten.
     let out = folder.join("again");
     fs::create_dir_all(&out).expect("a folder");
     let input = for_the_built_robot(&out, "own_postures.svg", 0.0);

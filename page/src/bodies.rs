@@ -1,13 +1,13 @@
-//! The bodies of an arm: mass, centre of mass, and the cuboid of even density that has the inertia.
+//! The bodies of an arm: mass, centre of mass, and the cuboid of uniform density that has the same inertia.
 //!
-//! A cuboid with edges a, b, c along its principal axes has I1 = m (b² + c²)/12 and its likes, so
+//! A cuboid with edges a, b, c along its principal axes has I1 = m (b² + c²)/12, and I2 and I3 by permutation. Therefore
 //!
 //! ```text
 //! a² = 6 (I2 + I3 - I1) / m
 //! ```
 //!
-//! which is negative for a tensor that no body has. The eigenvalues are found in the browser, where the cuboid is drawn; here the bodies
-//! are only gathered in numbers.
+//! A negative a² shows a tensor that no body has. The script computes the eigenvalues, because it draws the cuboid;
+//! this module only collects the numbers.
 
 use armgen_codegen::derive::parameters::nominal;
 use armgen_codegen::description::{BodyDescription, RobotDescription};
@@ -18,8 +18,9 @@ use serde_json::{json, Value};
 
 use crate::rows::frame;
 
-/// The bodies of all links, those of the payload in the end effector's frame: name, frame that carries them (from 1, or `e`), mass, centre
-/// of mass, tensor xx xy yy xz yz zz, what is doubtful about the density of its cuboid, and what is said of the tensor.
+/// The bodies of all links, and the payload, which is given in the frame of the end effector.
+/// Each has its name, carrying frame (from 1, or `e`), mass, centre of mass and inertia tensor (xx xy yy xz yz zz).
+/// `doubt` describes an unlikely density of its cuboid; `said` lists the messages about its tensor.
 pub(crate) fn bodies(manipulator: &Manipulator, description: &RobotDescription, diagnostics: &Diagnostics) -> Value {
     let of = |name: String, carrier: Value, part: &PlacedBody, written: Option<&BodyDescription>| {
         let number = |p: &_| nominal(manipulator, p).to_f64();
@@ -59,12 +60,12 @@ fn said<'d>(written: Option<&BodyDescription>, diagnostics: &'d Diagnostics) -> 
     about.map(|diagnostic| diagnostic.message.as_str()).collect()
 }
 
-/// The frame of the end effector in that of the last link.
+/// The pose of the end effector in the frame of the last link.
 pub(crate) fn tool(manipulator: &Manipulator) -> Value {
     json!(frame(manipulator, &manipulator.tool.frame))
 }
 
-/// The mass of links and rotors, kg.
+/// Total mass of links and rotors, kg.
 pub(crate) fn total_mass(manipulator: &Manipulator) -> f64 {
     let rotors = manipulator.joints.iter().filter_map(|joint| joint.motor.as_ref()).map(|motor| &motor.mass);
     let links = manipulator.joints.iter().flat_map(|joint| &joint.link).map(|part| &part.body.mass);

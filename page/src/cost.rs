@@ -1,4 +1,4 @@
-//! The table of `armgen count`: operations of every function, and how each was derived.
+//! The table of `armgen count`: the operations of every function, and the method that derived it.
 
 use std::fmt::Write;
 
@@ -6,7 +6,6 @@ use armgen_codegen::program::{Cost, Module};
 
 use crate::html::escape;
 
-/// The table, of all functions of a module.
 pub(crate) fn table(module: &Module) -> String {
     let mut text = format!("<p class=\"small\">Operations of the functions that <code>armgen generate</code> writes<span class=\"keys\">; a column is sorted by a click</span>. Functions that end in <code>_with</code> take the parameters as an argument. The weight counts a multiplication or an addition 1, a division {}, a sine with its cosine or an exponential {}, a change of sign 0.</p>\n<div class=\"scroll\" tabindex=\"0\" role=\"region\" aria-label=\"Operations\"><table class=\"costs\">\n<thead><tr>",
         Cost { div: 1, ..Cost::default() }.weight(),

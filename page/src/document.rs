@@ -1,4 +1,4 @@
-//! The HTML of a page: everything that is there without a script, and the places that the script fills.
+//! The HTML of a page: all static content, and empty elements that the script fills.
 
 use std::borrow::Cow;
 use std::fmt::Write;
@@ -13,10 +13,10 @@ use crate::rows::{convention, Row};
 use crate::{bodies, sheet, warnings};
 
 const STYLE: &str = include_str!("../web/page.css");
-/// Of what draws curves.
+/// The style sheet of the plotting library.
 const PLOTS: &str = include_str!("../vendor/uPlot-1.6.32/uPlot.min.css");
 
-/// What a page is made of.
+/// The parts of a page.
 pub(crate) struct Parts<'p> {
     pub(crate) model: &'p Model,
     pub(crate) description: &'p RobotDescription,
@@ -26,17 +26,16 @@ pub(crate) struct Parts<'p> {
     pub(crate) drives: &'p str,
     pub(crate) equations: &'p str,
     pub(crate) cost: &'p str,
-    /// The heading and the text of the logs, or of the experiments; none without any.
+    /// Heading and content of the section about logs or experiments; `None` if there are no runs.
     pub(crate) logs: Option<(&'static str, String)>,
-    /// What the script is given.
+    /// The input of the script.
     pub(crate) data: &'p Value,
-    /// The script.
     pub(crate) script: &'p str,
 }
 
 /// The whole page.
 pub(crate) fn document(parts: &Parts<'_>) -> String {
-    // Indentation, comments, each on a line of its own, and ends of lines are for whoever reads `page/web`.
+    // Only readers of `page/web` need indentation, line ends, and comments, which have their own lines.
     let lines = STYLE.lines().map(str::trim_start).filter(|line| !line.starts_with("/*"));
     let own: String = lines.flat_map(|line| [line, if line.ends_with([',', ';', '{', '}']) { "" } else { "\n" }]).collect();
     let style = if parts.logs.is_some() { format!("{PLOTS}\n{own}") } else { own };
@@ -56,7 +55,7 @@ pub(crate) fn document(parts: &Parts<'_>) -> String {
     let sections = sections(parts);
     text += "<main>\n<nav aria-label=\"Sections\">";
     for (id, title, _) in &sections {
-        // The contents stand on one line.
+        // A short title keeps the table of contents on a single line.
         let brief = title.split(" against").next().unwrap_or(title);
         let _ = write!(text, "<a href=\"#{id}\">{brief}</a>");
         if *id == "numbers" {
@@ -83,7 +82,7 @@ pub(crate) fn document(parts: &Parts<'_>) -> String {
     text
 }
 
-/// The sections beside the picture: identifier, title, content.
+/// The sections next to the picture: identifier, title, content.
 fn sections<'p>(parts: &'p Parts<'_>) -> Vec<(&'static str, &'static str, Cow<'p, str>)> {
     let table = sheet::table(parts.rows, convention(parts.description), &parts.warnings);
     let frames = "<details open><summary>Frames</summary><div id=\"frames\"></div></details>\n";
@@ -189,7 +188,7 @@ fn sliders(rows: &[Row]) -> String {
     text + "</div>\n<div class=\"controls\"><button type=\"button\" id=\"zero\">zero</button><button type=\"button\" id=\"play\" aria-pressed=\"false\" title=\"one joint after the other through its range\">sweep joints</button><button type=\"button\" id=\"copy-q\">copy q</button><span id=\"said\" role=\"status\"></span></div>\n<p id=\"ellipsoid-axes\" class=\"small\"></p>\n"
 }
 
-/// The source of a policy that is this very text.
+/// The CSP source expression that allows exactly this text.
 fn hash(text: &str) -> String {
     format!("sha256-{}", base64(&Sha256::digest(text.as_bytes())))
 }

@@ -1,4 +1,4 @@
-//! What drives and holds each joint: its motor, friction, spring and limits; and the named parameters of the description.
+//! The data of each joint's drive: motor, friction, spring and limits; and the named parameters of the description.
 
 use std::fmt::Write;
 
@@ -12,20 +12,20 @@ use armgen_codegen::source::Source;
 
 use crate::html::{decimal, escape, sentence};
 
-/// A value of a joint: as it is written, and its number.
+/// A value of a joint: its source text and its number.
 struct Cell {
     written: String,
     number: Option<f64>,
 }
 
-/// A column: what it is, and its unit at a joint that turns and at one that slides.
+/// A column: its quantity, and its units for revolute and prismatic joints.
 struct Column {
     title: &'static str,
     units: [&'static str; 2],
     cells: Vec<Option<Cell>>,
 }
 
-/// The tables that there is something to write in.
+/// The tables that have any entries.
 pub(crate) fn tables(source: &Source, description: &RobotDescription, manipulator: &Manipulator) -> String {
     let written = description.joints.iter().flat_map(|joints| &joints.value);
     let joints: Vec<(&Joint, &JointDescription)> = manipulator.joints.iter().zip(written).collect();
@@ -90,7 +90,7 @@ fn columns(source: &Source, manipulator: &Manipulator, joints: &[(&Joint, &Joint
     all.into_iter().filter(|column| column.cells.iter().any(Option::is_some)).collect()
 }
 
-/// What stands in the columns that are there.
+/// A title from the columns that exist.
 fn title(columns: &[Column]) -> String {
     let kind = |title: &str| match title {
         "viscous at the rotor" => "friction",
@@ -110,7 +110,7 @@ fn title(columns: &[Column]) -> String {
     sentence(&text)
 }
 
-/// Motors, friction, springs and the limits of rates and efforts, a joint a row; nothing where no joint has any.
+/// Motors, friction, springs and the limits of rates and efforts, a joint per row; empty if no joint has any.
 fn drives(joints: &[(&Joint, &JointDescription)], columns: Vec<Column>) -> String {
     if columns.is_empty() {
         return String::new();
@@ -129,7 +129,7 @@ fn drives(joints: &[(&Joint, &JointDescription)], columns: Vec<Column>) -> Strin
     text + "</tbody></table></div></details>\n"
 }
 
-/// The named parameters; nothing where there are none.
+/// The named parameters; empty without parameters.
 fn parameters(source: &Source, description: &RobotDescription, manipulator: &Manipulator) -> String {
     if description.parameters.is_empty() {
         return String::new();
@@ -146,7 +146,7 @@ fn parameters(source: &Source, description: &RobotDescription, manipulator: &Man
     text + "</tbody></table></div></details>\n"
 }
 
-/// The beginning of a table that can be folded in.
+/// The beginning of a table that the reader can fold.
 fn start(title: &str, id: &str, heads: &str) -> String {
     format!(
         "<details><summary>{title}</summary><div class=\"scroll\" tabindex=\"0\" role=\"region\" aria-label=\"{title}\">\
@@ -154,7 +154,7 @@ fn start(title: &str, id: &str, heads: &str) -> String {
     )
 }
 
-/// As it is written, and below it the number, where that says more.
+/// The source text, and below it the number if it adds information.
 fn value(cell: &Cell, unit: &str) -> String {
     let Cell { written, number } = cell;
     let said = number.map(|number| format!("{} {unit}", decimal(number)).trim().to_owned()).filter(|said| said != written);

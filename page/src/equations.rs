@@ -1,8 +1,8 @@
-//! The equations of a page: what `armgen show` prints, packed.
+//! The equations of a page: the output of `armgen show`, compressed.
 //!
-//! The texts of an arm of seven joints are 1 MB with their LaTeX; packed they are a quarter of it. Quantities that stand beside each other repeat
-//! much of each other, so several share a packet: alone, those of a small arm take nearly twice the room. A packet is unpacked when a section of
-//! one of its quantities is opened.
+//! The texts of an arm of seven joints take 1 MB with their LaTeX, and a quarter of that compressed.
+//! Neighbouring quantities repeat large parts of each other, so several share a packet; separately, those of a small arm need almost
+//! twice the space. The script decompresses a packet when the reader opens a section of one of its quantities.
 
 use std::fmt::Write;
 
@@ -16,22 +16,22 @@ use serde_json::{json, Map, Value};
 use crate::html::{escape, pack, with_code};
 use crate::words;
 
-/// A quantity whose text is longer than this is left out, with the command that prints it.
+/// The page omits a quantity with a longer text, and shows the command that prints it.
 const LONGEST: usize = 400_000;
 
-/// All texts of a page together, in bytes before they are packed: where they are more, the longest are left out.
+/// Limit on all texts of a page in bytes, before compression; beyond it, the page omits the longest texts.
 const TOGETHER: usize = 2_800_000;
 
-/// No text is added to a packet that would become longer: whoever opens a section waits for all of its packet.
+/// Size limit of a packet with several texts: a reader who opens a section waits for its whole packet.
 const PACKET: usize = 131_072;
 
-/// All quantities: those that the page holds, and those that it names only.
+/// All quantities: those in the page, and those that it only names.
 pub(crate) struct Equations {
     quantities: Vec<Quantity>,
     absent: Vec<Absent>,
-    /// The determinant's factors with the numbers of the description, or those that all minors share, and where each is zero.
+    /// The factors of the determinant, or the common factors of all minors, with the description's numbers; and their zeros.
     pub(crate) factors: Value,
-    /// Of an arm of more joints than the six rows of its task the same of its first six joints; null of others.
+    /// The same for the first six joints of an arm with more joints than the six rows of its task; otherwise null.
     pub(crate) first_six: Value,
 }
 
@@ -39,14 +39,14 @@ struct Quantity {
     name: String,
     symbol: String,
     size: String,
-    /// What the script is given, as JSON; none of one that is too long.
+    /// The input of the script, as JSON; `None` if it is too long.
     text: Option<String>,
     steps: usize,
 }
 
 impl Equations {
     pub(crate) fn new(model: &Model) -> Equations {
-        // Closed forms wherever there are some: a page folds them up.
+        // Prefer closed forms, because a page can fold them.
         let closed = Style { form: Form::Closed, digits: None };
         let [nominal, symbolic] = Sheet::in_both_readings(model, &Item::all(), closed);
         let mut quantities = parallel_map(&nominal.quantities, |shown| {
@@ -63,7 +63,7 @@ impl Equations {
         }
     }
 
-    /// What the script is given: the packets, and by the name of each quantity which of them has it.
+    /// The input of the script: the packets, and the packet's index for the name of each quantity.
     pub(crate) fn data(&self) -> Value {
         let mut packets: Vec<String> = Vec::new();
         let mut of = Map::new();
@@ -80,7 +80,7 @@ impl Equations {
         json!({"of": of, "packets": packed})
     }
 
-    /// The section, to be filled as its parts are opened.
+    /// The section; the script fills its parts when the reader opens them.
     pub(crate) fn section(&self) -> String {
         let mut text = String::from(CHOICES);
         for quantity in &self.quantities {
@@ -100,7 +100,7 @@ impl Equations {
             };
         }
         for Absent { function, reason } in &self.absent {
-            // Whom `show` sends here is here.
+            // The reader whom `show` sends to the page is already there.
             let reason = with_code(reason).replace(&with_code(ASK_THE_PAGE), ASKED);
             let _ = writeln!(text, "<p class=\"small\">{}: {reason}.</p>", escape(&function.replace('_', " ")));
         }
@@ -108,14 +108,14 @@ impl Equations {
     }
 }
 
-/// The factors of a determinant, or those that all minors share, and where each is zero.
+/// The factors of a determinant, or the common factors of all minors, and their zeros.
 fn factors_of(shown: &Shown) -> Value {
     let value = serde_json::to_value(shown).expect("strings and numbers always have a JSON form");
     json!({"factors": value["factors"], "common": value["common_factors"], "singular": value["singular"]})
 }
 
-/// The determinant of the first six columns of the Jacobian of a longer arm, which is that of the arm without the other joints: where a task of
-/// all six rows is seen from changes no determinant. J loses rank nowhere but where it is zero.
+/// The determinant of the first six columns of the Jacobian of a longer arm, which equals that of the arm without the other joints:
+/// if all six rows matter, the choice of frame does not change it. J can lose rank only where it is zero.
 fn first_six(model: &Model) -> Option<Shown> {
     let whole = &model.manipulator;
     let sixth = LinkId(5);
@@ -131,10 +131,10 @@ fn first_six(model: &Model) -> Option<Shown> {
     sheet.quantities.pop()
 }
 
-/// Where a page has what [`ASK_THE_PAGE`] asks for.
+/// The place on a page that answers [`ASK_THE_PAGE`].
 const ASKED: &str = "<a href=\"#singular\">w = √det(J Jᵀ) among the numbers</a> is 0 where J loses rank";
 
-/// The name of a function as a heading has it.
+/// The name of a function for a heading.
 fn in_words(name: &str) -> String {
     let words =
         name.replace('_', " ").replace("center", "centre").replace("coriolis", "Coriolis").replace("jacobian", "Jacobian");
@@ -152,7 +152,7 @@ const CHOICES: &str = "<div class=\"controls\"><fieldset><legend>Parameters</leg
 <p id=\"names\" class=\"small\" hidden></p>
 ";
 
-/// A symbol as it is printed: letters of Greek, dots, indices, and d of partial derivatives.
+/// A symbol in typeset form: Greek letters, dots, indices, and ∂ for partial derivatives.
 fn typeset(symbol: &str) -> String {
     const SIGNS: [(&str, &str); 6] =
         [("dtau/", "∂τ/"), ("d(ddq)/", "∂q̈/"), ("/d(dq)", "/∂q̇"), ("/dq", "/∂q"), ("^-1", "⁻¹"), ("'", "ᵀ")];
@@ -177,7 +177,7 @@ fn typeset(symbol: &str) -> String {
     text
 }
 
-/// Leaves out the longest texts of those that are too much together.
+/// Drops the longest texts until the rest fits into [`TOGETHER`].
 fn leave_out(quantities: &mut [Quantity]) {
     let length = |quantity: &Quantity| quantity.text.as_ref().map_or(0, String::len);
     let mut order: Vec<usize> = (0..quantities.len()).collect();

@@ -1,8 +1,8 @@
-//! Text that becomes part of a page: escaped wherever it comes from.
+//! Text for a page, escaped regardless of its origin.
 
 use miniz_oxide::deflate::compress_to_vec_zlib;
 
-/// As the content of an element or the value of an attribute in double quotes.
+/// Escapes text for element content or a double-quoted attribute value.
 pub(crate) fn escape(text: &str) -> String {
     let mut escaped = String::with_capacity(text.len());
     for c in text.chars() {
@@ -12,7 +12,7 @@ pub(crate) fn escape(text: &str) -> String {
             '>' => escaped.push_str("&gt;"),
             '"' => escaped.push_str("&quot;"),
             '\'' => escaped.push_str("&#39;"),
-            // Line breaks stay; what cannot stand in HTML, or turns the direction of writing, is shown by its number.
+            // Line breaks stay. Characters that HTML forbids or that change the writing direction appear as their code.
             '\n' | '\t' => escaped.push(c),
             c if c.is_control() || matches!(c, '\u{202a}'..='\u{202e}' | '\u{2066}'..='\u{2069}') => {
                 escaped.push_str(&format!("\\u{{{:x}}}", u32::from(c)));
@@ -23,23 +23,23 @@ pub(crate) fn escape(text: &str) -> String {
     escaped
 }
 
-/// What stands between backticks is code.
+/// Escaped text whose parts between backticks become `<code>`.
 pub(crate) fn with_code(text: &str) -> String {
     let parts = text.split('`').map(escape).enumerate();
     parts.map(|(k, part)| if k % 2 == 1 { format!("<code>{part}</code>") } else { part }).collect()
 }
 
-/// JSON that can stand in a script element: `<` never stands as itself.
+/// JSON for a script element: it never contains a literal `<`.
 pub(crate) fn json(value: &serde_json::Value) -> String {
     value.to_string().replace('<', "\\u003c").replace('\u{2028}', "\\u2028").replace('\u{2029}', "\\u2029")
 }
 
-/// A text packed: zlib, in base64.
+/// Compresses a text: zlib, then base64.
 pub(crate) fn pack(text: &str) -> String {
     base64(&compress_to_vec_zlib(text.as_bytes(), 9))
 }
 
-/// A number for people: six digits at most.
+/// A number for display: six digits at most.
 pub(crate) fn decimal(value: f64) -> String {
     if value == 0.0 {
         return "0".into();
@@ -65,7 +65,7 @@ pub(crate) fn decimal(value: f64) -> String {
     }
 }
 
-/// Of RFC 4648.
+/// Base64 after RFC 4648.
 pub(crate) fn base64(bytes: &[u8]) -> String {
     const DIGITS: &[u8; 64] = b"ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
     let mut text = String::new();
@@ -80,7 +80,7 @@ pub(crate) fn base64(bytes: &[u8]) -> String {
     text
 }
 
-/// With a capital letter.
+/// The text with a capital first letter.
 pub(crate) fn sentence(text: &str) -> String {
     let mut letters = text.chars();
     letters.next().map_or_else(String::new, |first| first.to_uppercase().chain(letters).collect())

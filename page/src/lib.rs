@@ -1,14 +1,14 @@
-//! The page of a robot: one HTML file, to be opened from disk, without network or server.
+//! The page of a robot: a single HTML file that opens from disk, without network or server.
 //!
 //! ```text
-//! description -> rows, bodies, warnings ─┬─> document: HTML that is there without a script
-//!             -> the module in JavaScript ┴─> script: the files of web/ around it; data: what they are given
+//! description -> rows, bodies, warnings ─┬─> document: static HTML
+//!             -> the module in JavaScript ┴─> script: the files of web/ around it; data: their input
 //! ```
 //!
-//! What the page computes of the robot, the emitted JavaScript computes. Text goes in, text comes out; the same text always.
+//! The emitted JavaScript module does all computations for the robot. The same input text always gives the same page.
 //!
-//! A page fetches nothing and runs no script but its own: its policy names the hash of the one script and of the one style. Texts reach the
-//! document escaped, or as text nodes and attributes that the script sets.
+//! A page loads nothing and runs only its own script: its content security policy names the hashes of the script and the style.
+//! Text enters the document escaped, or through text nodes and attributes that the script sets.
 
 mod bodies;
 mod cost;
@@ -35,7 +35,7 @@ use armgen_codegen::source::Source;
 use armgen_codegen::{programs, validate, Model, Scalar};
 use serde_json::{json, Value};
 
-/// The functions that a page computes with, if the arm has them.
+/// The functions that a page uses, if the arm has them.
 const FUNCTIONS: &[&str] = &[
     "direct_kinematics",
     "link_frames",
@@ -50,27 +50,27 @@ const FUNCTIONS: &[&str] = &[
     "potential_energy",
 ];
 
-/// A function with more operations than this is left out of the page, with a line that says so, if the page can do without.
+/// The page omits an optional function with more operations, and a note names it.
 const OPERATIONS: usize = 6000;
 
-/// Functions that the page has however long they are.
+/// Functions that the page keeps at any length.
 const ALWAYS: &[&str] =
     &["direct_kinematics", "link_frames", "geometric_jacobian", "inertia_matrix", "gravity", "inverse_dynamics"];
 
-/// Why there is no page of a valid description: a log does not go with it.
+/// The reason why a valid description has no page: a log does not match it.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Misfit {
     /// The name of the run.
     pub run: String,
-    /// Why, in words.
+    /// The reason, in words.
     pub reason: String,
 }
 
-/// The page of the arm that `source` describes, with runs that are played on it, and all there is to say about the text. There is a page if
-/// and only if no diagnostic is an error.
+/// The page of the arm in `source` with the runs to play, and all diagnostics of the text.
+/// A page exists if and only if no diagnostic is an error.
 ///
 /// # Errors
-/// A log of other joints.
+/// A log has other joints than the arm.
 pub fn page(source: &Source, runs: &[Run]) -> Result<(Option<String>, Diagnostics), Misfit> {
     let (valid, mut diagnostics) = validate::read_for(source, Scalar::F64);
     let Some((manipulator, places)) = valid else { return Ok((None, diagnostics)) };
@@ -112,7 +112,7 @@ pub fn page(source: &Source, runs: &[Run]) -> Result<(Option<String>, Diagnostic
     Ok((Some(page), diagnostics))
 }
 
-/// Keeps only the functions that a page computes with; those that are too long for it are named with their operations.
+/// Keeps only the functions that a page uses; returns the names and operations of those that are too long.
 fn keep_what_is_used(module: &mut Module) -> Vec<(String, usize)> {
     let mut left_out = Vec::new();
     module.functions.retain(|function| {
@@ -130,7 +130,7 @@ fn keep_what_is_used(module: &mut Module) -> Vec<(String, usize)> {
     left_out
 }
 
-/// What the script is given.
+/// The input of the script.
 #[allow(clippy::too_many_arguments)]
 fn data(
     manipulator: &Manipulator,

@@ -1,4 +1,4 @@
-//! Logs of motions, as the page plays them: columns over time, thinned and packed, with what was expected of the run and its figures.
+//! Logs of motions for playback in the page: thinned, compressed columns over time, with the run's expected results and figures.
 
 use std::collections::BTreeSet;
 use std::fmt::Write;
@@ -9,53 +9,53 @@ use serde_json::{json, Map, Value};
 use crate::html::{escape, pack};
 use crate::rows::Row;
 
-/// At most so many samples are kept of a log: more are not seen.
+/// Maximum number of samples in a log; a plot cannot show more.
 pub const SAMPLES: usize = 2000;
 
-/// At most so many columns: several times those of the longest arm with all of its parameters.
+/// Maximum number of columns, several times as many as the longest arm with all its parameters needs.
 const COLUMNS: usize = 4096;
 
-/// What begins the name of the column of a joint's position.
+/// Prefix of the column names of joint positions.
 const POSITION: &str = "q_";
 
-/// A run: a log, and what is known of it.
+/// A run: a log with its results and figures.
 #[derive(Clone, Debug, Default)]
 pub struct Run {
-    /// Its name; no two runs of a page have the same.
+    /// Its name, unique within a page.
     pub name: String,
-    /// What it shows, in a line; may be empty.
+    /// Its description, in a single line; may be empty.
     pub title: String,
-    /// What was recorded; none of a run that left numbers alone.
+    /// The recorded columns; `None` for a run that has only numbers.
     pub log: Option<Log>,
-    /// What came out beside what was expected.
+    /// Measured results with the expected results.
     pub verdicts: Vec<Verdict>,
-    /// Its figures.
+    /// The figures.
     pub figures: Vec<Figure>,
 }
 
 /// A figure of a run.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Figure {
-    /// What it shows.
+    /// The title.
     pub title: String,
-    /// Its text.
+    /// The SVG text.
     pub svg: String,
 }
 
-/// A line of the table of results.
+/// A row of the table of results.
 #[derive(Clone, Debug)]
 pub struct Verdict {
-    /// The quantity, and how it was taken: `max |e_z| in [5, 20] s`.
+    /// The quantity and its evaluation: `max |e_z| in [5, 20] s`.
     pub what: String,
     /// The name of the quantity.
     pub name: String,
-    /// What the quantity is, in words; may be empty.
+    /// Explanation of the quantity in words; may be empty.
     pub meaning: String,
-    /// The value found, with its unit.
+    /// The measured value, with its unit.
     pub found: String,
-    /// What was expected.
+    /// The expected value.
     pub expected: String,
-    /// Whether it was met.
+    /// Whether the measured value is as expected.
     pub met: bool,
 }
 
@@ -68,10 +68,10 @@ pub struct Log {
 }
 
 impl Log {
-    /// Reads comma-separated values: a line of names, the first of them `t`, and a line for each sample. `unit` is asked for each name.
+    /// Reads comma-separated values: a line of names, the first of them `t`, then a line per sample. `unit` gives the unit of each name.
     ///
     /// # Errors
-    /// What is no such text, with its line.
+    /// The text is not such a table; the message gives the line.
     pub fn read(text: &str, unit: impl Fn(&str) -> String) -> Result<Log, String> {
         let mut lines = text.lines().enumerate().filter(|(_, line)| !line.trim().is_empty());
         let (_, head) = lines.next().ok_or("the log is empty; its first line names the columns")?;
@@ -119,12 +119,12 @@ impl Log {
         Ok(Log { units: names.iter().map(|name| unit(name)).collect(), names, columns })
     }
 
-    /// The joints whose positions it holds.
+    /// The joints with a column of positions.
     fn joints(&self) -> Vec<&str> {
         self.names.iter().filter_map(|name| name.strip_prefix(POSITION)).collect()
     }
 
-    /// Whether its joints are those of an arm; a log without joints goes with any.
+    /// Whether its joints match the arm's joints; a log without joints matches any arm.
     pub(crate) fn fits(&self, joints: &[&str]) -> Result<(), String> {
         let own = self.joints();
         if own.is_empty() || own == joints {
@@ -133,7 +133,7 @@ impl Log {
         Err(format!("its joints are {}, and the arm's are {}", own.join(", "), joints.join(", ")))
     }
 
-    /// The columns with the digits of the page; none where a number is not finite.
+    /// The columns with the digits for the page; `None` for a number that is not finite.
     fn written(&self) -> Vec<Vec<Option<f64>>> {
         let digits = |x: f64| format!("{x:.6e}").parse().unwrap_or(x);
         let column = |(j, column): (usize, &Vec<f64>)| {
@@ -142,24 +142,24 @@ impl Log {
         self.columns.iter().enumerate().map(column).collect()
     }
 
-    /// The time with all of its digits, since a log may begin late, and the others with seven, packed; `rows` say which of two units is that of
-    /// a joint's column.
+    /// The compressed columns: the time with all digits, because a log may begin late, and the others with seven.
+    /// `rows` decide between the two units of a joint's column.
     fn packed(&self, rows: &[Row]) -> String {
         let units: Vec<&str> = self.names.iter().zip(&self.units).map(|(name, unit)| of_joint(name, unit, rows)).collect();
         pack(&json!({"names": self.names, "units": units, "columns": self.written()}).to_string())
     }
 }
 
-/// Of a unit such as `rad, m` the first for a joint that turns and the second for one that slides, where the column is that of a joint.
+/// For a joint's column with two units, such as `rad, m`: the first for a revolute joint, the second for a prismatic joint.
 fn of_joint<'u>(name: &str, unit: &'u str, rows: &[Row]) -> &'u str {
     let Some((turning, sliding)) = unit.split_once(", ") else { return unit };
     let ends_with = |row: &&Row| name.strip_suffix(&row.name).is_some_and(|kind| kind.ends_with('_'));
-    // `q_b_a` is of the joint `b_a`, also beside a joint `a`.
+    // `q_b_a` belongs to the joint `b_a`, even if a joint `a` exists.
     let joint = rows.iter().filter(ends_with).max_by_key(|row| row.name.len());
     joint.map_or(unit, |row| if row.revolute { turning } else { sliding })
 }
 
-/// What the script is given, by the names of the runs.
+/// The input of the script, keyed by the names of the runs.
 pub(crate) fn data(runs: &[Run], rows: &[Row]) -> Value {
     let of = |run: &Run| {
         let figures: Vec<Value> = run.figures.iter().map(|figure| json!([figure.title, pack(&figure.svg)])).collect();
@@ -168,7 +168,7 @@ pub(crate) fn data(runs: &[Run], rows: &[Row]) -> Value {
     Value::Object(runs.iter().map(of).collect::<Map<_, _>>())
 }
 
-/// Its heading: runs with results are experiments.
+/// The heading of the section: runs with results are experiments.
 pub(crate) fn title(runs: &[Run]) -> &'static str {
     if runs.iter().any(|run| !run.verdicts.is_empty()) {
         "Experiments"
@@ -177,7 +177,6 @@ pub(crate) fn title(runs: &[Run]) -> &'static str {
     }
 }
 
-/// The section.
 pub(crate) fn section(runs: &[Run]) -> String {
     let mut text = String::from(CONTROLS);
     let all: Vec<&Verdict> = runs.iter().flat_map(|run| &run.verdicts).collect();
@@ -211,7 +210,7 @@ pub(crate) fn section(runs: &[Run]) -> String {
     text
 }
 
-/// What the quantities of a table are, each meaning once.
+/// The meanings of the quantities in a table, each once.
 fn meanings(verdicts: &[Verdict]) -> String {
     let mut all: Vec<(&str, Vec<&str>)> = Vec::new();
     for Verdict { name, meaning, .. } in verdicts.iter().filter(|verdict| !verdict.meaning.is_empty()) {
@@ -233,10 +232,10 @@ fn meanings(verdicts: &[Verdict]) -> String {
     }
 }
 
-/// So many names of one meaning are written out.
+/// Up to this number, the text lists all names with the same meaning.
 const NAMED: usize = 4;
 
-/// How many of the verdicts are as expected; nothing where there are none.
+/// The number of verdicts as expected; empty without verdicts.
 fn as_expected(verdicts: &[&Verdict]) -> String {
     let met = verdicts.iter().filter(|verdict| verdict.met).count();
     match (verdicts.len(), met) {
@@ -275,7 +274,7 @@ mod tests {
         assert!(read(&(columns(4096) + &"1,".repeat(4095) + "1\n")).is_ok());
     }
 
-    /// Seconds since 1970, as robots' clocks write them.
+    /// Robot clocks write seconds since 1970.
     #[test]
     fn a_time_that_begins_late_keeps_its_digits() {
         let log = read("t,x\n1764118000.0,1.23456789\n1764118000.1,inf\n").unwrap();

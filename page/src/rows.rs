@@ -1,4 +1,4 @@
-//! The rows of a description: each value as it is written, its number, its place.
+//! The rows of a description: each value with its source text, number and line.
 
 use armgen_codegen::derive::parameters::{denavit_hartenberg, nominal};
 use armgen_codegen::description::{
@@ -9,47 +9,45 @@ use armgen_codegen::kinds::JointKind;
 use armgen_codegen::manipulator::{Joint, Manipulator, Placement, Pose};
 use armgen_codegen::source::Source;
 
-/// A frame in another: rotation and translation by rows.
+/// A pose in another frame: [R p], 3×4.
 pub(crate) type Frame = [[f64; 4]; 3];
 
-/// One row.
 pub(crate) struct Row {
     /// Name of the joint.
     pub(crate) name: String,
-    /// Whether it turns.
+    /// Whether the joint is revolute.
     pub(crate) revolute: bool,
-    /// a, alpha, d, theta; none in rows of the convention urdf.
+    /// a, alpha, d, theta; `None` for rows of the convention urdf.
     pub(crate) denavit_hartenberg: Option<[Value; 4]>,
-    /// Origin and axis as written, in rows of the convention urdf.
+    /// Source text of origin and axis, for rows of the convention urdf.
     pub(crate) urdf: Option<[String; 2]>,
-    /// What stands before the motion, from the frame before: of the first row from the frame that `base` gives.
+    /// Elementary transforms before the motion, from the previous frame; those of the first row start at the frame that `base` gives.
     pub(crate) before: Vec<Frame>,
-    /// Direction of the joint axis after it.
+    /// Direction of the joint axis after these transforms.
     pub(crate) axis: [f64; 3],
-    /// What stands after the motion.
+    /// Elementary transforms after the motion.
     pub(crate) after: Vec<Frame>,
     /// Lowest and highest position.
     pub(crate) limits: Option<[f64; 2]>,
-    /// Limits as written.
+    /// Source text of the limits.
     pub(crate) limits_written: String,
-    /// The line on which it begins.
+    /// Line of the row in the file.
     pub(crate) line: usize,
 }
 
 /// A value of a row.
 pub(crate) struct Value {
-    /// As it is written.
+    /// Its source text.
     pub(crate) written: String,
     /// In m or rad.
     pub(crate) number: f64,
 }
 
-/// What the convention of a description is.
+/// The convention of a description; standard DH by default.
 pub(crate) fn convention(description: &RobotDescription) -> Convention {
     description.convention.as_ref().map_or(Convention::Standard, |convention| convention.value)
 }
 
-/// All rows.
 pub(crate) fn rows(source: &Source, description: &RobotDescription, manipulator: &Manipulator) -> Vec<Row> {
     let written = description.joints.iter().flat_map(|joints| &joints.value);
     let convention = convention(description);
@@ -59,20 +57,20 @@ pub(crate) fn rows(source: &Source, description: &RobotDescription, manipulator:
     joints.map(|(i, (joint, written))| row(source, manipulator, convention, joint, written, skip(i))).collect()
 }
 
-/// The frame from which the first row starts, in the base frame.
+/// The frame in which the first row starts, relative to the base frame.
 pub(crate) fn base(manipulator: &Manipulator, description: &RobotDescription) -> Frame {
     let elements = &manipulator.joints[0].row.before.elements;
     let count = base_elements(manipulator, convention(description));
     frame(manipulator, &Pose::new(elements[..count].to_vec()).frame)
 }
 
-/// How many elements of what stands before the first motion are the base's.
+/// The number of transforms before the first motion that belong to the base.
 fn base_elements(manipulator: &Manipulator, convention: Convention) -> usize {
     let elements = manipulator.joints[0].row.before.elements.len();
     match convention {
         Convention::Standard => elements - 1,
         Convention::Modified => elements - 2,
-        // Nobody sees where the base ends and the origin begins.
+        // The transforms of the base and of the origin cannot be told apart.
         Convention::Urdf => 0,
     }
 }
@@ -115,7 +113,7 @@ fn row(
     }
 }
 
-/// A pose as it is written, on one line: translations, and rotations with the key that they are written under.
+/// The source text of a pose on a single line: translations, and rotations with their key.
 fn pose_text(source: &Source, pose: Option<&PoseDescription>) -> String {
     let rotation = |rotation: &RotationDescription| match rotation {
         RotationDescription::Rpy(rpy) => format!("rpy {}", list_text(rpy, source)),
@@ -132,7 +130,7 @@ fn pose_text(source: &Source, pose: Option<&PoseDescription>) -> String {
     pose.into_iter().flat_map(|pose| &pose.elements).flat_map(element).collect::<Vec<_>>().join(", ")
 }
 
-/// A placement with the numbers of the description.
+/// The numeric value of a placement at the description's parameters.
 pub(crate) fn frame(manipulator: &Manipulator, placement: &Placement) -> Frame {
     std::array::from_fn(|i| {
         std::array::from_fn(|j| match j {

@@ -1,7 +1,7 @@
-//! The script of a page: ES modules, a concept a file, joined into one text.
+//! The script of a page: ES modules, a file per concept, joined into a single text.
 //!
-//! Each file becomes a function that is called once and returns what the file exports; an import takes from what an earlier one returned.
-//! So nothing has to be built, and the files are tested as they stand. Imports and exports have one form each:
+//! Each file becomes a function that runs once and returns the file's exports. An import reads the result of an earlier function.
+//! So there is no build step, and tests run the unmodified files. Imports and exports have a single form each:
 //!
 //! ```text
 //! import { name, name } from "./file.mjs";
@@ -10,7 +10,7 @@
 
 use std::fmt::Write;
 
-/// The files, each after those that it imports.
+/// The files, each after the files it imports.
 const FILES: &[(&str, &str)] = &[
     ("vector", include_str!("../web/vector.mjs")),
     ("format", include_str!("../web/format.mjs")),
@@ -49,14 +49,14 @@ const FILES: &[(&str, &str)] = &[
     ("main", include_str!("../web/main.mjs")),
 ];
 
-/// What stands for the file that plays logs in pages without any.
+/// Replaces the file that plays logs if the page has no logs.
 const WITHOUT_LOGS: &str = "export function logs() {}\n";
 
-/// What draws curves, with its licence: only in pages with logs.
+/// The plotting library and its licence, only in pages with logs.
 const PLOTS: &str = include_str!("../vendor/uPlot-1.6.32/uPlot.iife.min.js");
 const PLOTS_LICENCE: &str = include_str!("../vendor/uPlot-1.6.32/LICENSE");
 
-/// The script of a page around an emitted module.
+/// The script of a page: the emitted module and the files.
 pub(crate) fn script(module: &str, with_plots: bool) -> String {
     let mut text = String::new();
     if with_plots {
@@ -72,8 +72,8 @@ pub(crate) fn script(module: &str, with_plots: bool) -> String {
     inert(&text)
 }
 
-/// A file without the lines that are comments alone, a fifth of it, without indentation, an eighth, and without empty lines: they are for whoever
-/// reads `page/web`, or the module that `armgen generate` writes, half of which they are. A text of a file ends on the line on which it begins, so that no indentation is part of one.
+/// Removes comment lines (a fifth of a file), indentation (an eighth) and empty lines, which only readers of `page/web` need.
+/// Comments take half of the module that `armgen generate` writes. No string literal spans several lines, so none contains indentation.
 fn brief(file: &str) -> String {
     let mut text = String::with_capacity(file.len());
     let mut within = false;
@@ -81,7 +81,7 @@ fn brief(file: &str) -> String {
         let words = line.trim();
         let begins = within || words.starts_with("/**");
         let ends = words.ends_with("*/");
-        // Code may follow a comment on its line.
+        // Code may follow a comment on the same line.
         let comment = within || words.starts_with("//") || (begins && (ends || !words.contains("*/")));
         within = comment && begins && !ends;
         if !comment && !words.is_empty() {
@@ -92,12 +92,12 @@ fn brief(file: &str) -> String {
     text
 }
 
-/// The name under which the exports of a file are known to those after it.
+/// The variable with the exports of a file.
 fn variable(file: &str) -> String {
     format!("{file}_mjs")
 }
 
-/// A file as a function that is called once, and returns its exports, frozen.
+/// Wraps a file in a function that runs once and returns its frozen exports.
 fn closed(file: &str) -> String {
     let mut exports: Vec<&str> = Vec::new();
     let mut text = String::from("(() => {\n");
@@ -129,7 +129,7 @@ fn closed(file: &str) -> String {
     text
 }
 
-/// The same script without the texts at which HTML would see an end or a comment: they stand in strings and comments only.
+/// The same script without sequences that HTML reads as an end tag or a comment; they occur only in strings and comments.
 fn inert(script: &str) -> String {
     let mut text = String::with_capacity(script.len());
     let mut rest = script;

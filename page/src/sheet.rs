@@ -1,4 +1,4 @@
-//! The data sheet of a page: the rows as they are written with their numbers, and the warnings at them.
+//! The data sheet of a page: the rows with source texts, numbers and warnings.
 
 use std::fmt::Write;
 
@@ -8,7 +8,6 @@ use crate::html::{decimal, escape};
 use crate::rows::Row;
 use crate::warnings::Warnings;
 
-/// The table of the rows.
 pub(crate) fn table(rows: &[Row], convention: Convention, warnings: &Warnings<'_>) -> String {
     let urdf = convention == Convention::Urdf;
     let columns: &[&str] =

@@ -1,8 +1,8 @@
-//! What a function is, in a sentence.
+//! A description of a function in a sentence.
 
 use armgen_codegen::catalogue;
 
-/// The title of a function in its documentation; of a matrix of a list that of the list.
+/// The title of a function in its documentation; for a matrix from a list, the list's title.
 pub(crate) fn about(function: &str) -> Option<&'static str> {
     if let Some((quantity, _)) = catalogue::named(function) {
         return Some(quantity.documentation.title);

@@ -1,6 +1,6 @@
-//! Pages in a real browser, opened from disk: every message on the console and every request but the file fails the test.
+//! Pages in a real browser, opened from disk. Any console message and any request besides the file fails the test.
 //!
-//! Where there is no browser a line says so, and the tests pass (`tests/src/installed.rs`).
+//! Without a browser, the tests print a line and pass (`tests/src/installed.rs`).
 
 #[path = "browser/budgets.rs"]
 mod budgets;
@@ -32,7 +32,7 @@ use pages::{long, opened, robot, robots, written};
 use rust::State;
 use serde_json::Value;
 
-/// Moves the sliders to places of their ranges, types rates and accelerations, and gives what the document then holds.
+/// Moves the sliders within their ranges, types rates and accelerations, and returns the numbers of the document.
 const MOVE: &str = r##"((k) => {
     const put = (id, value) => {
         const input = document.getElementById(id);
@@ -101,7 +101,7 @@ fn shown_numbers_have_the_bits_of_rust() {
     assert!(compared > 1000);
 }
 
-/// The frames of the picture stand at the origins of the link frames.
+/// The picture draws each frame at the origin of the link frame.
 fn check_frames(place: &str, frames: &Value, values: &[f64]) {
     let frames = frames.as_array().expect("frames");
     assert_eq!(frames.len(), values.len() / 16 + 2, "{place}");
@@ -114,7 +114,7 @@ fn check_frames(place: &str, frames: &Value, values: &[f64]) {
     }
 }
 
-/// An arm without mass has its frames, its Jacobian and nothing of the dynamics.
+/// An arm without masses shows its frames and its Jacobian, but no dynamics.
 #[test]
 #[ignore = "wide"]
 fn an_arm_without_mass_has_its_kinematics() {
@@ -128,7 +128,7 @@ fn an_arm_without_mass_has_its_kinematics() {
     tab.close();
 }
 
-/// Texts of files that would be markup are texts, and nothing of them runs, with the policy removed as well.
+/// Markup in texts of files appears as text and never runs, even without the content security policy.
 #[test]
 #[ignore = "wide"]
 fn hostile_texts_are_inert() {
@@ -173,7 +173,7 @@ fn hostile_texts_are_inert() {
     }
 }
 
-/// Arms of one, twelve and thirty-two joints, the first of them prismatic, in modified rows, with limits.
+/// Arms of 1, 12 and 32 joints, the first prismatic, with modified DH rows and limits.
 #[test]
 #[ignore = "wide"]
 fn short_and_long_arms_have_pages() {

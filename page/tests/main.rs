@@ -1,4 +1,4 @@
-//! The page of a robot. One program for all tests of the crate: a file beside this one is a module here.
+//! The page of a robot. A single program for all tests of the crate: each file in this folder is a module here.
 
 mod browser;
 #[path = "../../tests/src/installed.rs"]

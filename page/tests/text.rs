@@ -1,4 +1,4 @@
-//! Pages as texts: the same input gives the same bytes, faulty descriptions none, and no text of a file becomes markup.
+//! Pages as texts: the same input gives the same bytes, a faulty description gives no page, and text of a file never becomes markup.
 
 use armgen_codegen::source::Source;
 
@@ -18,7 +18,7 @@ fn the_same_text_gives_the_same_bytes_wherever_it_lies() {
     assert_eq!(page("a/arm.yaml", ARM), page("/b/c/arm.yaml", ARM));
 }
 
-/// A cell that a rule makes a block leaves its column: every rule that does so names the element that it means.
+/// A rule that makes a table cell a block takes it out of its column, so every such rule must name the element it means.
 #[test]
 fn no_rule_of_the_style_takes_a_cell_out_of_its_column() {
     let page = page("arm.yaml", ARM);
@@ -38,7 +38,7 @@ fn no_rule_of_the_style_takes_a_cell_out_of_its_column() {
     assert!(page.contains("<span class=\"written\">"));
 }
 
-/// What plays logs and draws curves is a fifth of a small page.
+/// The player of logs and the plotting library make up a fifth of a small page.
 #[test]
 fn a_page_without_logs_has_nothing_that_plays_them() {
     assert!(!page("arm.yaml", ARM).contains("uPlot"));
@@ -57,13 +57,13 @@ fn nothing_of_a_name_or_an_expression_is_markup() {
     let text = format!("# </script><script>commented()</script>\n{ARM}");
     let page = page(name, &text);
     assert!(!page.contains("commented()"), "comments of a description are no part of a page");
-    // The name of the file stands in the head of the module, in a comment of the script.
+    // The head of the module, a comment of the script, contains the file name.
     assert_eq!(page.matches("<script").count(), 2);
     assert_eq!(page.matches("</script").count(), 2);
     assert!(!page.contains("<!--"));
 }
 
-/// Why an arm of two joints more than rows has no determinant is said without backticks, and with where on the page its rank is seen.
+/// The page explains in HTML why an arm with two joints more than rows has no determinant, and links to its measure of rank.
 #[test]
 fn nobody_is_sent_from_the_page_to_the_page() {
     let (head, joint) = ARM.trim_end().split_once("joints:\n").expect("joints");

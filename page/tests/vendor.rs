@@ -1,4 +1,4 @@
-//! Files taken in from others are those of the table, and the table names all of them.
+//! Third-party files match the table, and the table names all of them.
 
 use std::path::Path;
 

@@ -1,5 +1,5 @@
-//! The files of `page/web` under the tests that stand beside them, by Node, and their types, by TypeScript; without these a line says so, and
-//! the test passes (`tests/src/installed.rs`).
+//! Runs the tests of the files in `page/web` with Node, and checks their types with TypeScript. If a program is missing, a line
+//! reports it and the test passes (`tests/src/installed.rs`).
 
 use crate::installed;
 
@@ -22,7 +22,7 @@ fn the_files_of_the_script_pass_their_own_tests() {
 #[ignore = "wide"]
 fn the_types_that_the_files_of_the_script_say_are_theirs() {
     let folder = concat!(env!("CARGO_MANIFEST_DIR"), "/web");
-    // "Version 5.9.3"; older ones read fewer of the types that JSDoc can say.
+    // "Version 5.9.3"; older versions support fewer JSDoc types.
     let said = Command::new("tsc").arg("--version").output().map(|output| String::from_utf8_lossy(&output.stdout).into_owned());
     let major = said.ok().and_then(|said| said.split([' ', '.']).nth(1)?.parse::<u32>().ok());
     if major.is_none_or(|major| major < 5) {

@@ -1,6 +1,6 @@
-//! Moves from posture to posture within limits, under inverse-dynamics control, and tells how far the arm was off.
+//! Moves from posture to posture within limits, under inverse-dynamics control, and prints how far the arm was off.
 //!
-//! `Scara` stands for your robot: with a module from `armgen generate` take `robot::Nominal`.
+//! Replace `Scara` by your robot: `robot::Nominal` of a module from `armgen generate`.
 
 use std::error::Error;
 use std::time::Duration;

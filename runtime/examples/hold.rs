@@ -1,7 +1,7 @@
 //! Holds a posture: PD with gravity compensation, on an arm that carries a load which its model does not know.
 //!
-//! `Scara` stands for your robot: with a module from `armgen generate` take `robot::Nominal` for the model and
-//! `robot::WithParameters { parameters }` for the arm as it is.
+//! Replace `Scara` by your robot. A module from `armgen generate` has `robot::Nominal` for the model and
+//! `robot::WithParameters { parameters }` for the true arm.
 
 use std::error::Error;
 use std::time::Duration;

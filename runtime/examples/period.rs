@@ -1,8 +1,8 @@
 //! Asks before anything moves whether gains and sampling period go together: the sampled loop at rest at postures of the path, and in
 //! motion along it.
 //!
-//! `Scara` stands for your robot: with a module from `armgen generate` take `robot::Nominal` for the model and
-//! `robot::WithParameters { parameters }` for the arm as it is.
+//! Replace `Scara` by your robot. A module from `armgen generate` has `robot::Nominal` for the model and
+//! `robot::WithParameters { parameters }` for the true arm.
 
 use std::error::Error;
 use std::time::Duration;

@@ -1,7 +1,7 @@
 //! Finds joint variables for a pose of the end effector by closed-loop inverse kinematics, damped near singular postures.
 //!
-//! `Scara` stands for your robot: with a module from `armgen generate` take `robot::Nominal` and `Task::from_indices(robot::TASK)`.
-//! Of an arm with all solutions in closed form, `armgen generate --ik` writes these.
+//! Replace `Scara` by your robot: `robot::Nominal` and `Task::from_indices(robot::TASK)` of a module from `armgen generate`. If
+//! all solutions of the arm have a closed form, `armgen generate --ik` writes them.
 
 use std::error::Error;
 
@@ -31,7 +31,7 @@ pub(crate) fn main() -> Result<(), Box<dyn Error>> {
     println!("{:?} after {} steps: q = {:.4?}", reached.outcome, reached.steps, reached.q.as_slice());
     assert_eq!(reached.outcome, Outcome::Converged);
 
-    // Two metres away there is no posture, and that is said.
+    // Two metres away there is no posture, and the outcome reports it.
     let far = Pose { position: vector![2.0, 0.0, 0.2], ..goal };
     let reached = clik.approach(&robot, &vector![0.1, 0.6, 0.1, 0.0], &far, 1000)?;
     println!("{:?}: {:.3} m are missing", reached.outcome, reached.error.fixed_rows::<3>(0).norm());

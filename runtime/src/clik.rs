@@ -1,8 +1,8 @@
 //! Closed-loop inverse kinematics: joint motions that follow a motion of the end effector.
 //!
-//! Integrating dq = J^-1 v alone drifts. Fed back, the error e = x_d - x(q) of the task's rows obeys de = v_d - J dq: linear rows exactly,
-//! angular rows to second order in the whole rotation error and where a turn that the task leaves free is 0
-//! ([`Task::error`](crate::task::Task::error)). So
+//! Integrating dq = J^-1 v alone drifts, so the laws feed back the error e = x_d - x(q) of the task rows. Linear rows obey de =
+//! v_d - J dq exactly. Angular rows obey it to second order in the whole rotation error, where a turn that the task leaves free
+//! is 0 ([`Task::error`](crate::task::Task::error)). So
 //!
 //! | algorithm | law | error | the book |
 //! |---|---|---|---|
@@ -70,23 +70,23 @@ messages! { ClikError,
     ClikError::RatesNotFinite => "the rates or accelerations are infinite or NaN: gains or model are beyond the range of the scalar";
 }
 
-/// What a step, or a whole approach, came to.
+/// Outcome of a step, or of a whole approach.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum Outcome {
     /// Every error is within its tolerance.
     Converged,
-    /// The error is above its tolerance, and the law is at work.
+    /// The error is above its tolerance, and the law is active.
     Tracking,
     /// A rate limit slowed the motion down, along its direction.
     RateLimited,
-    /// Near a singularity: rates are damped, and the error closes more slowly than its gain says.
+    /// Near a singularity: rates are damped, and the error closes more slowly than by its gain.
     Damped,
-    /// Near a singularity, and what is left of the error, as K weighs it, points where the arm cannot move now. Of a single step this does not say
-    /// that the goal is out of reach: it may be as far inwards, in line with a stretched arm. Of an [`approach`](Clik::approach) it does, as far
-    /// as the arm, moved aside, has come to rest no nearer.
+    /// Near a singularity, where the remaining error, weighted by K, points in a direction in which the arm cannot move. After a
+    /// single step the goal may still be reachable, for instance inwards along a stretched arm. After an
+    /// [`approach`](Clik::approach) it is out of reach: the arm, moved aside, came to rest no nearer.
     OutOfReach,
-    /// This joint stands at its limit and would have to go beyond.
+    /// This joint is at its limit and the law moves it further out.
     JointLimit {
         /// The joint, counted from 0.
         joint: usize,

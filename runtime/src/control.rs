@@ -1,6 +1,6 @@
-//! Controllers: what torque to ask for, given what is desired and what is measured.
+//! Controllers: the torque for each sample, from the reference and the measurement.
 //!
-//! All start from the equation of motion B ddq + n = tau with n = C dq + F + g, of which a model (marked ^) is known:
+//! All start from the equation of motion B ddq + n = tau with n = C dq + F + g and a model of it, marked ^:
 //!
 //! | controller | law | the book |
 //! |---|---|---|
@@ -15,11 +15,11 @@
 //! passes the model, the reference and the measurement of each sample. Only [`Adaptive`] and [`OperationalSpace`] have a controller state,
 //! advanced by forward Euler after the torque is computed.
 //!
-//! Each has a method `torque`; the trait [`Controller`] is what they have in common, for a loop that runs any of them.
+//! Each has a method `torque`; the trait [`Controller`] is their common interface, for a loop that runs any of them.
 //!
 //! A measurement that is not finite gives [`ControlError::MeasurementNotFinite`], never a torque, and leaves the controller state as it was.
 //!
-//! The robot is whatever implements the traits: `Nominal` of an emitted module, say.
+//! The robot is any type that implements the traits, such as `Nominal` of an emitted module.
 //!
 //! ```
 //! use armgen_runtime::control::{ControlError, InverseDynamics, TorqueLimits};
@@ -105,12 +105,12 @@ pub struct Torque<T, const N: usize> {
     pub damped: bool,
 }
 
-/// A controller: the torque for each sample, from the model of the robot, what is desired and what is measured.
+/// A controller: the torque for each sample, from the model of the robot, the reference and the measurement.
 pub trait Controller<R: Kinematics<N>, const N: usize> {
-    /// What is desired: a [`JointReference`], or an [`OperationalReference`] of the end effector.
+    /// The reference: a [`JointReference`], or an [`OperationalReference`] of the end effector.
     type Reference;
 
-    /// Torque for one sample, then the step of the controller state, if there is one.
+    /// Torque for one sample; then advances the controller state, if any.
     ///
     /// # Errors
     /// Where there is no torque; the controller state stays as it was.

@@ -1,16 +1,16 @@
 //! Manipulability: how well an arm can move, and push, at a posture.
 //!
-//! Joint rates of unit norm give end-effector velocities in the ellipsoid v' (J J')^-1 v = 1; joint torques of unit norm balance forces
-//! in gamma' (J J') gamma = 1 (the book, Sect. 3.9, eqs. 3.123 and 3.127). With J J' = U diag(sigma^2) U' both have the axes U, the
-//! first with semi-axes sigma_i, the second with 1 / sigma_i: where an arm moves fast it pushes weakly. Their common measure is
+//! Joint rates of unit norm give end-effector velocities in the ellipsoid v' (J J')^-1 v = 1. Joint torques of unit norm balance forces in
+//! gamma' (J J') gamma = 1 (the book, Sect. 3.9, eqs. 3.123 and 3.127). With J J' = U diag(sigma^2) U' both have the axes U. The semi-axes
+//! are sigma_i for velocities and 1 / sigma_i for forces: where an arm moves fast it pushes weakly. Their common measure is
 //!
 //! ```text
 //! w(q) = sqrt(det(J J')) = prod sigma_i,      dw/dq_i = w tr(J^+ dJ/dq_i)
 //! ```
 //!
-//! The functions take a Jacobian of task rows. Ellipsoids make sense for rows of one unit: take the translational rows, or the angular
-//! ones. w of a square Jacobian is |det J|. For an arm with more joints than rows w is that of the rows given, and not that of any
-//! larger task: an arm that maximises the w of a relaxed task may well walk into a singularity of the full one.
+//! The functions take a Jacobian of task rows. Ellipsoids make sense for rows of one unit: take the translational rows, or the
+//! angular ones. w of a square Jacobian is |det J|. w describes the given rows only, not a larger task. An arm that maximises the
+//! w of a relaxed task may reach a singularity of the full task.
 
 use crate::{
     linalg::{left_singular, lit, LeftSingular, RightInverse},

@@ -1,4 +1,4 @@
-//! What an error says: a sentence for each of its cases, without an allocation.
+//! The message of an error: a sentence for each of its cases, without an allocation.
 
 /// `Display`, a sentence for each pattern, and `Error`.
 macro_rules! messages {

@@ -26,8 +26,8 @@ fn axial<T: RealField + Copy>(e: &Matrix3<T>) -> Vector3<T> {
 
 /// Rotation vector theta r of the rotation matrix `e`, theta in [0, pi]; rad.
 ///
-/// Accurate to a few roundings for every angle, half a turn included, where the sign of r is free and the first component of r
-/// of a size above 1e-3 is taken positive.
+/// Accurate to a few roundings for every angle. At half a turn the sign of r is free: the first component with a magnitude above
+/// 1e-3 is taken positive.
 pub fn rotation_vector<T: RealField + Copy>(e: &Matrix3<T>) -> Vector3<T> {
     let v = axial(e);
     let (sine, cosine) = (v.norm(), (e.trace() - T::one()) * lit::<T>(0.5));
@@ -69,7 +69,8 @@ pub fn turn_about<T: RealField + Copy>(e: &Matrix3<T>, axis: usize) -> T {
     sine.atan2(cosine)
 }
 
-/// Rotation vector of the swing of `e` beside base axis `axis` (0, 1, 2 for x, y, z); rad, of a length in [0, pi], at right angles to `axis`.
+/// Rotation vector of the swing of `e` relative to base axis `axis` (0, 1, 2 for x, y, z); rad, of a length in [0, pi], at right
+/// angles to `axis`.
 ///
 /// `e` is a swing, about an axis at right angles to `axis`, and after it a turn about `axis`, which does not count. With i the axis and
 /// (i, j, k) in cyclic order the swing turns by phi = atan2(s, e_ii), s = |(e_ij, e_ik)|, and is (phi/s) (e_ik, -e_ij) in j and k. Where

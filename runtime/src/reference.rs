@@ -1,4 +1,4 @@
-//! What is desired of an arm, and what it does, at one instant.
+//! References and states of an arm at one instant.
 
 use crate::{linalg::is_finite, robot::Kinematics};
 use nalgebra::{Matrix3, Matrix4, RealField, SVector, Vector3, Vector6};
@@ -86,7 +86,7 @@ impl<T: RealField + Copy, const N: usize> JointReference<T, N> {
     }
 }
 
-/// Joint variables and rates: the state of an arm, or what is measured of it.
+/// Joint variables and rates: the state of an arm, or its measurement.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct State<T, const N: usize> {
     /// Joint variables, rad or m.

@@ -1,12 +1,12 @@
 //! The traits of a robot: `Kinematics`, `Dynamics` and `Regressor`, each extending the one before it, `InverseKinematics`, and one for each
 //! function that not every robot has or not every controller needs.
 //!
-//! The emitted module of a robot comes with implementations of these traits (feature `runtime` of the crate that holds it):
-//! a unit struct for the nominal robot, and `WithParameters` for the same robot with parameters chosen at run time.
-//! The methods take `&self` so that a robot may carry data.
+//! With the feature `runtime` of its crate, the emitted module of a robot implements these traits for two types. `Nominal` is a
+//! unit struct for the robot of the description. `WithParameters` is the same robot with parameters chosen at run time. The
+//! methods take `&self` so that a robot may carry data.
 //!
-//! Frames and signs, for all methods: the base frame is the frame before the description's first row, or before `base` where there is
-//! one; the end effector is the last link's frame times `tool`. Vectors of Jacobians are expressed in the base frame. The equation of motion is
+//! Frames and signs, for all methods. The base frame is the frame before the description's first row, or before `base` if given. The end
+//! effector is the last link's frame times `tool`. Vectors of Jacobians are expressed in the base frame. The equation of motion is
 //!
 //! ```text
 //! B(q) ddq + C(q, dq) dq + F(dq) + g(q) = tau                       (the book, Sect. 7.2, eq. 7.42 without contact)
@@ -76,12 +76,13 @@ pub trait Dynamics<const N: usize>: Kinematics<N> {
     /// Gravity term g(q) = dU/dq, springs included, on the left of the equation of motion; N m or N.
     fn gravity(&self, q: &SVector<Self::Real, N>) -> SVector<Self::Real, N>;
 
-    /// Friction torque, N m or N, at the joints on the left of the equation of motion: viscous and Coulomb friction, which have the sign of `dq`, and what
-    /// the description has besides.
+    /// Friction torque, N m or N, at the joints on the left of the equation of motion. It sums viscous and Coulomb friction,
+    /// which have the sign of `dq`, and the other friction of the description.
     fn friction(&self, dq: &SVector<Self::Real, N>) -> SVector<Self::Real, N>;
 
-    /// Friction torque, N m or N, that grows with the load of its joint, F_l |g_i(q)| sign(dq_i), beside [`friction`](Dynamics::friction) on the left of the
-    /// equation of motion: part of `inverse_dynamics` and `forward_dynamics`, and of no regressor. 0 for robots that have none.
+    /// Friction torque, N m or N, that grows with the load of its joint, F_l |g_i(q)| sign(dq_i). It adds to
+    /// [`friction`](Dynamics::friction) on the left of the equation of motion. It is part of `inverse_dynamics` and
+    /// `forward_dynamics`, and of no regressor. 0 for robots without such friction.
     fn load_friction(&self, q: &SVector<Self::Real, N>, dq: &SVector<Self::Real, N>) -> SVector<Self::Real, N> {
         let _ = (q, dq);
         SVector::zeros()
@@ -109,9 +110,9 @@ pub trait Dynamics<const N: usize>: Kinematics<N> {
     /// Kinetic energy of links and rotors, T = 1/2 dq' B dq, J.
     fn kinetic_energy(&self, q: &SVector<Self::Real, N>, dq: &SVector<Self::Real, N>) -> Self::Real;
 
-    /// Potential energy U(q), J: that of gravity, zero where all masses, rotors included, lie at the origin of the base frame, and
-    /// 1/2 k_s (q - rest)^2 of each spring. Of base parameters, which leave out what no torque depends on, U and a constant: differences and the
-    /// gradient are the same.
+    /// Potential energy U(q), J: gravity, plus 1/2 k_s (q - rest)^2 of each spring. Its zero has all masses, rotors included, at
+    /// the origin of the base frame. Base parameters omit terms that affect no torque, so with them U differs by a constant;
+    /// differences and the gradient are the same.
     fn potential_energy(&self, q: &SVector<Self::Real, N>) -> Self::Real;
 }
 
@@ -128,7 +129,7 @@ pub trait Regressor<const N: usize, const P: usize>: Dynamics<N> {
         ddqr: &SVector<Self::Real, N>,
     ) -> SMatrix<Self::Real, N, P>;
 
-    /// The torque of what is not among the parameters, N m or N: tau_known of the equation above, without `load_friction`.
+    /// The torque of all terms outside the parameter vector, N m or N: tau_known of the equation above, without `load_friction`.
     fn known_torque(
         &self,
         q: &SVector<Self::Real, N>,

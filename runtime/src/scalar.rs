@@ -1,4 +1,4 @@
-//! What is computed in the precision of the scalar: f32 in f32 and in integers, so that a processor without f64 does it in hardware.
+//! Functions computed in the precision of the scalar: f32 in f32 and in integers, so that a processor without f64 does it in hardware.
 //!
 //! `libm` computes f32 sines by way of f64, and so does the standard library with times.
 
@@ -41,7 +41,8 @@ pub(crate) fn seconds<T: RealField>(t: Duration) -> T {
     nalgebra::convert(seconds)
 }
 
-/// The nearest duration; `None` for what is negative, not finite or too long. There once in a program, not wherever a plan calls it.
+/// The nearest duration; `None` for a time that is negative, not finite or too long. Not inlined: a program holds it once, not at
+/// every call of a plan.
 #[inline(never)]
 pub(crate) fn duration<T: RealField>(seconds: T) -> Option<Duration> {
     if is_single::<T>() {

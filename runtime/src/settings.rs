@@ -4,7 +4,7 @@
 
 use nalgebra::{RealField, SVector};
 
-/// What a refused number was meant for.
+/// The setting that a refused number was meant for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum Setting {
@@ -75,14 +75,14 @@ impl core::fmt::Display for Setting {
 pub enum SettingError {
     /// It is infinite or NaN.
     NotFinite {
-        /// What it was meant for.
+        /// The setting that the number was meant for.
         setting: Setting,
         /// Which of its elements.
         index: usize,
     },
     /// It is negative, or zero where only a positive value makes sense: the gain matrix would not be positive definite.
     NotPositive {
-        /// What it was meant for.
+        /// The setting that the number was meant for.
         setting: Setting,
         /// Which of its elements.
         index: usize,

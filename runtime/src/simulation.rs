@@ -7,7 +7,7 @@
 //! d/dt (q, dq) = (dq, B^-1 (tau - C dq - F(dq) - g))
 //! ```
 //!
-//! is integrated, by fixed Runge-Kutta steps or by adaptive ones. Sensors may delay and disturb what the controller sees, from a seed:
+//! is integrated, by fixed Runge-Kutta steps or by adaptive ones. Sensors may delay and disturb the measurement, from a seed:
 //! equal inputs give equal bits. The energy audit compares the change of T + U with the work of the torques and of friction.
 //!
 //! ```

@@ -1,7 +1,7 @@
 //! Stability of the sampled loop, before anything moves.
 //!
-//! A proof in continuous time says nothing about a controller that runs once a millisecond. At rest at a posture, plant and controller
-//! are linear for small deviations x = (δq, δv) of joint variables and rates:
+//! A proof in continuous time proves nothing about a controller that runs once a millisecond. At rest at a posture, plant and
+//! controller are linear for small deviations x = (δq, δv) of joint variables and rates:
 //!
 //! ```text
 //! plant        dx/dt = A x + B u,   A = [[0, I], [-B^-1 dg/dq, -B^-1 F_v]],   B = [0; B^-1]
@@ -9,18 +9,18 @@
 //! controller   u_k = K x_k + L m_k,   m_{k+1} = m_k + T_s E x_k                (m: integral or estimate, by forward Euler)
 //! ```
 //!
-//! The loop is stable where all eigenvalues of the whole matrix lie within the unit circle; the largest modulus is its spectral radius.
-//! With d samples of delay u_k acts d periods later, and the d torques on their way are a chain of further states. Of an estimate only
-//! those combinations are states that are excited at rest: the others are constants, and would add eigenvalues at 1.
+//! The loop is stable where all eigenvalues of the whole matrix lie within the unit circle; the largest modulus is its spectral radius. With
+//! d samples of delay u_k acts d periods later, and the d torques on their way are a chain of further states. Combinations of estimated
+//! parameters are states only if they are excited at rest: the others are constants, and would add eigenvalues at 1.
 //!
-//! The posture is one where the arm can rest: estimates are those of the plant, integrals make up for the model, and a law with neither, or
-//! a row of it, rests off its reference, as far as its error makes up for the model ([`LineariseAtRest`], [`Rest`]). A start from another estimate is a
-//! transient, not a verdict ([`analyse_start`]).
+//! The arm can rest at the posture: estimates equal the plant's parameters, and integrals compensate the model error. A law, or
+//! row, without estimate and integral rests off its reference, where its error compensates the model error ([`LineariseAtRest`],
+//! [`Rest`]). A start from another estimate is a transient, not a verdict ([`analyse_start`]).
 //!
-//! What this proves: that small deviations from rest die away at these postures. It proves nothing of a motion, in which
-//! Y(q, dq, dq_r, ddq_r) excites what rest does not, and nothing of a start far from the truth. That is what a [`MotionAnalysis`] looks at.
+//! This proves that small deviations from rest die away at these postures. It proves nothing about a motion, in which Y(q, dq,
+//! dq_r, ddq_r) excites more than rest does, nor about a start far from the true parameters. A [`MotionAnalysis`] examines these.
 //!
-//! [`SampledLoop`] is one posture; [`analyse`] is a path at rest; [`MotionAnalysis::of`] is the motion. A run says all of it first.
+//! [`SampledLoop`] is one posture; [`analyse`] is a path at rest; [`MotionAnalysis::of`] is the motion. A run reports all of them first.
 //!
 //! ```
 //! use armgen_runtime::control::PdGravity;

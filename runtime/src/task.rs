@@ -87,7 +87,7 @@ impl<const M: usize> Task<M> {
     /// The task of these rows.
     ///
     /// # Errors
-    /// Where there is none, or one is named twice.
+    /// Where `rows` is empty or repeats a row.
     pub fn new(rows: [Row; M]) -> Result<Self, TaskError> {
         if M == 0 {
             return Err(TaskError::Empty);
@@ -103,7 +103,7 @@ impl<const M: usize> Task<M> {
     /// The task of the rows at these places of a six-vector: `Task::from_indices(robot::TASK)` is the task of an emitted robot.
     ///
     /// # Errors
-    /// Where there is none, one is beyond 5, or one is named twice.
+    /// Where `indices` is empty, repeats an index, or holds an index beyond 5.
     pub fn from_indices(indices: [usize; M]) -> Result<Self, TaskError> {
         let mut rows = [Row::X; M];
         for (row, index) in rows.iter_mut().zip(indices) {
@@ -134,11 +134,12 @@ impl<const M: usize> Task<M> {
     /// Linear rows are differences of positions. Angular rows:
     /// - one angular row: the turn about that axis alone that brings the actual orientation nearest to the desired one,
     ///   [`orientation::turn_about`]. For an arm that can turn about this axis only it is the difference of the angles, in (-pi, pi];
-    /// - two: the swing of R_d R' beside the third axis, [`orientation::swing`]. The turn about the third axis is free and does not enter;
+    /// - two: the swing of R_d R' without the turn about the third axis, [`orientation::swing`]. The turn about the third axis is
+    ///   free and does not enter;
     /// - three: the rotation vector of R_d R', [`orientation::rotation_vector`].
     ///
-    /// How angular rows change with the angular velocities w_d and w: let i be the axis that is left out, or of one row the axis of the row;
-    /// R_d R' the turn by theta about i after the swing by phi about r, and v = Rot(i, -theta) w_d. Then
+    /// How angular rows change with the angular velocities w_d and w: with two rows, let i be the missing axis; with one row, its
+    /// own axis. Let R_d R' be the turn by theta about i after the swing by phi about r, and v = Rot(i, -theta) w_d. Then
     /// - three rows: de = w_d - w + (w_d + w)/2 x e + O(|e|^2 (|w_d| + |w|)), where the added term is of second order where both velocities
     ///   are small with the error;
     /// - two rows: de = v - w + w_i i x e + O(|e|^2 (|v| + |w|)) in the rows, and d|e| = r.(v - w) exactly. So the error closes as fast

@@ -6,8 +6,8 @@
 //! p(t) = p_0 + sum_i (p_i(s_i(t - t_i)) - p_i(0)),    t_{i+1} = t_i + T_i - dt_{i+1}      (the book, Sect. 4.3)
 //! ```
 //!
-//! With dt = 0 the point between two segments is a stop. With an anticipation dt > 0 the next segment starts before the previous one
-//! has ended, their displacements add, and the point becomes a via point that is passed at a distance.
+//! With dt = 0 the point between two segments is a stop. With an anticipation dt > 0 the next segment starts before the previous
+//! one has ended, and their displacements add. The point becomes a via point that is passed at a distance.
 //!
 //! - [`TimeLaw`]: how s runs: trapezoidal speed (by duration or by limits), cubic, quintic.
 //! - [`Path`]: positions in space. [`OrientationProfile`]: turns. [`OperationalTrajectory`]: both.
@@ -50,11 +50,11 @@ pub use reach::Reach;
 pub struct PlanError {
     /// Number of the segment (or turn), counted from 1; 0 where the fault is in the start.
     pub segment: usize,
-    /// What is wrong with it.
+    /// The fault.
     pub fault: PlanFault,
 }
 
-/// What is wrong with a segment.
+/// A fault of a segment.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum PlanFault {
     /// A number is infinite or NaN.

@@ -1,4 +1,4 @@
-//! Elementary functions are those of libm, whatever else the build enables: the same bits on a host and on a microcontroller.
+//! Elementary functions come from libm whatever else the build enables, with the same bits on a host and on a microcontroller.
 
 use armgen_runtime::simulation::Noise;
 use nalgebra::{ComplexField, RealField};

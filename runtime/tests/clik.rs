@@ -1,6 +1,6 @@
 //! Closed-loop inverse kinematics along the ghost path, every algorithm with its gains.
 //!
-//! Largest errors with five digits are those of the technical project, docs/technical-project.md.
+//! Largest errors with five digits come from the technical project, docs/technical-project.md.
 
 use crate::common;
 
@@ -173,7 +173,7 @@ fn approaches_end_with_a_name() {
     let reached = near([0.1, 1.0, 0.1, 0.0], far);
     assert_eq!(reached.outcome, Outcome::OutOfReach, "{reached:?}");
     common::close("distance left", reached.error.norm(), 0.1, 1e-4);
-    // Behind a joint limit.
+    // A goal beyond a joint limit.
     let limits = bounded().with_range([-1.0, 0.2, 0.0, -3.0], [1.0, 2.5, 0.4, 3.0]).unwrap();
     let clik = Clik::new(ghost::task(), damped(), 1e-3, limits, [1e-6; 4]).unwrap();
     let reached = clik.approach(&robot, &vector![0.1, 1.0, 0.1, 0.0], &goal([0.1, 1.0, 0.7, 0.0]), 20_000).unwrap();
@@ -242,7 +242,7 @@ fn second_order_is_stable_up_to_its_sampled_limits() {
     assert!(!fades(2.0 / (h * h), above * 3.0 / h, Integration::ExplicitEuler));
 }
 
-/// Rest is judged by what a step changes, and not by the limits of the rates, however far these are from what is asked.
+/// Rest is judged by the change in a step, not by the rate limits, however far these are from the requested rates.
 #[test]
 fn an_approach_ends_at_a_goal_within_reach_whatever_its_gain() {
     let robot = ghost::nominal();
@@ -277,7 +277,7 @@ fn an_approach_ends_at_a_goal_within_reach_whatever_its_gain() {
     assert_eq!(reached.outcome, Outcome::OutOfReach, "{reached:?}");
 }
 
-/// A goal 0.1 m beyond the stretched arm, under laws that weigh the rows differently: they stand where J' K e = 0, not where J' e is.
+/// A goal 0.1 m beyond the stretched arm, under laws that weigh the rows differently: they stop where J' K e = 0, not where J' e = 0.
 #[test]
 fn unequal_gains_end_out_of_reach_as_well() {
     fn outcome<A: Algorithm<Scara<f64>, 4, 4>>(law: A) -> Outcome {
@@ -308,8 +308,8 @@ fn strong_damping_is_not_out_of_reach() {
     }
 }
 
-/// From postures to the poses of others: all are reached where the scalar has the digits, and none is called out of reach where rounding
-/// keeps a small gain from its tolerance.
+/// From postures to the poses of others. All are reached where the scalar has the digits. None is reported out of reach where
+/// rounding keeps a small gain from its tolerance.
 #[test]
 fn no_goal_within_reach_is_called_out_of_reach() {
     fn outcomes<T: nalgebra::RealField + Copy>([k, period, rate, tolerance]: [f64; 4]) -> Vec<Outcome> {

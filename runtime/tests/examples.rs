@@ -1,4 +1,4 @@
-//! The programs of `examples/`, run: each checks what it says.
+//! The programs of `examples/`, run: each checks its own output.
 #![expect(clippy::duplicate_mod, reason = "each program holds its robot, as a user's own does")]
 
 #[path = "../examples/follow.rs"]

@@ -1,6 +1,6 @@
 //! Robust and adaptive control of the SCARA in joint space, with a load of 5 kg that the model does not know.
 //!
-//! Stored errors and efforts are those of the technical project, docs/technical-project.md.
+//! Stored errors and efforts come from the technical project, docs/technical-project.md.
 
 use crate::common;
 
@@ -178,7 +178,8 @@ fn adaptive_b() {
     below("largest joint error in [5, 20] s", worst(&reference, &samples).max(), 5e-7);
 }
 
-/// It is not linear in the parameters, so the model gives it as it is: without it a slide that is braked by more than K_D sigma stands.
+/// The friction is not linear in the parameters, so the law takes it from the model. Without it a slide that is braked by more
+/// than K_D sigma does not move.
 #[test]
 fn friction_that_grows_with_the_load_is_compensated() {
     let braked = |arm: Scara<f64>| Scara { load: 0.25, ..arm };

@@ -1,4 +1,4 @@
-//! The runtime, on arms written by hand. One program for all tests of the crate: a file beside this one is a module here.
+//! The runtime, on arms written by hand. One program for all tests of the crate: the other files of this folder are its modules.
 
 mod allocation;
 mod bits;

@@ -1,4 +1,4 @@
-//! Manipulability of the SCARA at three postures, and the identities behind it.
+//! Manipulability of the SCARA at three postures, and its identities.
 
 use crate::common;
 

@@ -1,4 +1,4 @@
-//! The hand-written SCARA against the check values of its closed forms: what the other tests stand on.
+//! Compares the hand-written SCARA, on which the other tests rely, with the check values of its closed forms.
 
 use crate::common;
 

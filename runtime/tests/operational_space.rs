@@ -1,6 +1,6 @@
 //! Operational-space control of the SCARA with a load of 5 kg that its model does not know.
 //!
-//! Stored errors are those of the technical project, docs/technical-project.md.
+//! Stored errors come from the technical project, docs/technical-project.md.
 
 use crate::common;
 

@@ -273,7 +273,7 @@ fn second_order_stays_within_limits() {
         for _ in 0..4000 {
             let step = clik.step(&robot, &state, &goal).unwrap();
             if integration == Integration::HoldConsistent {
-                // The reference is that of its acceleration, but for a joint that meets its limit.
+                // The reference follows its held acceleration, except for a joint that meets its limit.
                 let off = (step.reference.held(1e-3).q - step.next.q).abs();
                 let stop = 0.5e-3 * limits.rate()[2];
                 let stopped = step.outcome == Outcome::JointLimit { joint: 2 };

@@ -1,6 +1,6 @@
 //! Spectral radii of the sampled loops at 81 postures along the ghost path, with the load in the plant and not in the model.
 //!
-//! Stored radii and periods are those of the technical project, docs/technical-project.md.
+//! Stored radii and periods come from the technical project, docs/technical-project.md.
 
 use crate::common;
 
@@ -183,7 +183,7 @@ fn linearisations_are_derivatives_of_the_torque() {
     linearised_at(q, &damped, |x| damped.clone().torque(&model, &pose, x).unwrap().tau);
 }
 
-/// A posture with the elbow nearly stretched, and a law that damps there: lambda is so many times the smallest singular value.
+/// A posture with the elbow nearly stretched, and a law that damps there: lambda is `times` the smallest singular value.
 fn near_singular(times: f64, k_i: f64) -> (Vector4<f64>, OperationalSpace<f64, 4, 4>) {
     let q = vector![0.3, 0.1, 0.2, 0.4];
     let j = ghost::task().jacobian(&ghost::nominal().geometric_jacobian(&q));
@@ -193,8 +193,8 @@ fn near_singular(times: f64, k_i: f64) -> (Vector4<f64>, OperationalSpace<f64, 4
     (q, operational_space([400.0; 4], [k_i; 4], [40.0; 4]).with_damping(damping))
 }
 
-/// The error along u of the smallest sigma obeys dde + g (K_D de + K_P e + K_I int e) = 0, g = sigma^2 / (sigma^2 + lambda^2): with
-/// lambda = 2 sigma a fifth of the gains is left, and K_I = 16000 / 5 the limit.
+/// The error along u of the smallest sigma obeys dde + g (K_D de + K_P e + K_I int e) = 0, g = sigma^2 / (sigma^2 + lambda^2). So
+/// lambda = 2 sigma leaves a fifth of the gains, and K_I = 16000 / 5 is the limit.
 #[test]
 fn damping_lowers_the_gain_of_the_integral() {
     let model = ghost::nominal();
@@ -214,7 +214,7 @@ fn damping_lowers_the_gain_of_the_integral() {
     assert_eq!(loaded.without_rest, Some(0));
 }
 
-/// Where the simulated arm comes to rest, and how its error fades there, against what the analysis says.
+/// Compares the rest of the simulated arm, and the decay of its error there, with the analysis.
 #[test]
 fn an_operational_law_rests_where_it_is_said_to() {
     fn rest<const M: usize>(what: &str, reference: Vector4<f64>, mut law: OperationalSpace<f64, 4, M>) -> f64 {
@@ -233,7 +233,7 @@ fn an_operational_law_rests_where_it_is_said_to() {
         let report = analyse(&plant, &model, &law, &[reference], 1e-3, Delay::NONE).unwrap();
         close(what, report.offset, moved, 1e-15);
         assert!(report.is_stable(), "{report:?}");
-        // About that posture the torque is what the feedback says.
+        // About that posture the torque follows the feedback.
         let torque = |x: &State<f64, 4>| law.clone().torque(&model, &pose, x).unwrap().tau;
         let h = 1e-6;
         for i in 0..4 {
@@ -261,8 +261,8 @@ fn an_operational_law_rests_where_it_is_said_to() {
     assert!(loose.is_some_and(|rest: armgen_runtime::stability::Rest<f64, 4>| !rest.is_held));
 }
 
-/// Far from its reference an orientation error does not turn by -J: rows of three angles rest 0.2 rad off, and the feedback there is the
-/// derivative of the torque all the same; so is that of the integral of a row beside others that rest off.
+/// Far from its reference an orientation error does not change by -J. Rows of three angles rest 0.2 rad off, and the feedback
+/// there still equals the derivative of the torque. The same holds for the integral of a row next to rows that rest off.
 #[test]
 fn a_rest_off_the_reference_is_linearised_there() {
     let (plant, model) = (Gimbal { load: vector![60.0, -80.0, 50.0] }, Gimbal { load: Vector3::zeros() });
@@ -276,7 +276,7 @@ fn a_rest_off_the_reference_is_linearised_there() {
         assert!(said.is_held && e.norm() > 0.15 && e.norm() < 0.4, "{e}");
         let (pose, h) = (OperationalReference::at_rest(goal), 1e-5);
         let mut held = law;
-        // What the integral holds.
+        // The torque that the integral holds.
         let mut arm = Plant::new(&plant, State::at_rest(said.q), Integrator::RungeKutta4 { substeps: 1 });
         for _ in 0..20_000 {
             arm.advance(&held.torque(&model, &pose, arm.state()).unwrap().tau, 1e-3).unwrap();
@@ -298,7 +298,7 @@ fn a_rest_off_the_reference_is_linearised_there() {
     }
 }
 
-/// What is frozen, or held by its bound, leaves the load to F(Lambda e) + K_D Lambda e: the quill rests low by 5 g / ((50 + 25) 500) m.
+/// If the estimate is frozen, or at its bound, F(Lambda e) + K_D Lambda e carries the load: the quill rests low by 5 g / ((50 + 25) 500) m.
 #[test]
 fn an_estimate_that_cannot_come_to_the_truth_rests_off_the_reference() {
     let (plant, model, reference) = (ghost::loaded(), ghost::nominal(), ghost::start());
@@ -330,7 +330,7 @@ fn an_estimate_that_cannot_come_to_the_truth_rests_off_the_reference() {
         let report = analyse(&plant, &model, &law, &[reference], 1e-3, Delay::NONE).unwrap();
         close("offset", report.offset, (reference - said.q).amax(), 1e-15);
     }
-    // Of what gravity does not ask for it does not matter where it stays.
+    // The frozen value of a parameter that gravity does not excite does not matter.
     let mut elsewhere = NOMINAL;
     elsewhere[0] += 3.0;
     let first = std::array::from_fn(|i| i == 0);
@@ -471,7 +471,7 @@ fn a_law_without_an_integral_rests_off_its_reference() {
     }
     let report = of(&Mass { force: 1.0, stiffness: -300.0, ..FREE });
     assert_eq!((report.without_rest, report.is_stable()), (Some(0), false));
-    // Of two postures it is the second that is not held: this force alone holds the mass at the first.
+    // Only the second posture is not held: this force alone holds the mass at the first.
     let pushed = Mass { force: 90.0, stiffness: -300.0, ..FREE };
     let law = PdGravity::new([250.0], k_d).unwrap();
     let report = analyse(&pushed, &FREE, &law, &[vector![0.3], vector![0.4]], 1e-3, Delay::NONE).unwrap();

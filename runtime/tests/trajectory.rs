@@ -60,7 +60,7 @@ fn reach_speed_and_acceleration() {
         step = step.max((s.velocity - earlier.velocity).fixed_rows::<3>(0).amax());
         earlier = s;
     }
-    // Of the line x = 0.48 the nearest point is that at y = 0, of the whole path the farthest is the corner (0.72, -0.18).
+    // The nearest point of the line x = 0.48 is at y = 0; the farthest point of the whole path is the corner (0.72, -0.18).
     close("least reach", reach.0, 0.48, 1e-6);
     close("greatest reach", reach.1, 0.72f64.hypot(0.18), 1e-12);
     // Lines of a length L cruise at L / (T - t_c); the fastest is segment 10, by (0.075, 0.27, -0.1) in 1.5 s.
@@ -96,8 +96,8 @@ fn stops_and_via_points() {
         }
     }
     assert_eq!(missed.iter().map(|(i, _)| *i).collect::<Vec<_>>(), [5, 6, 7, 9, 12]);
-    // A time u of the t_c into the blend the first segment lacks (t_c - u)^2 / (2 t_c (T - t_c)) of its way, and the second, the next one,
-    // has gone u^2 / (2 t_c (T - t_c)) of its own.
+    // At the time u into the blend of duration t_c, the first segment has (t_c - u)^2 / (2 t_c (T - t_c)) of its way left. The
+    // next segment has gone u^2 / (2 t_c (T - t_c)) of its own.
     for (i, nearest) in missed {
         let part = |segment: &Segment<f64>, u: f64| {
             let (way, seconds) = (segment.to() - segment.from(), (segment.end() - segment.start()).as_secs_f64());

@@ -138,7 +138,7 @@ impl Functions for Compiled {
     fn call(&self, function: &str, arguments: &Arguments) -> Vec<f64> {
         let Arguments { pi, q, dq, ddq, dqr, ddqr, tau } = arguments;
         let mut question = format!("{} {function}", self.index);
-        // Each list with its length: a judge gives a function what it needs and no more.
+        // Each list with its length: a judge only passes the arguments that a function needs.
         for list in [pi, q, dq, ddq, dqr, ddqr, tau] {
             write!(question, " {}", list.len()).expect("text");
             for x in list {

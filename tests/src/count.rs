@@ -1,4 +1,4 @@
-//! The operations that stand in an emitted text, counted apart from the generator: by reading the text.
+//! The operations in an emitted text, counted independently of the generator by parsing the text.
 
 use std::collections::BTreeMap;
 
@@ -23,11 +23,11 @@ pub struct Operations {
     pub exp: usize,
 }
 
-/// Operations of every public function of a module, with those of the functions that hold parts of it, `NAME_part_1` and so on, or that write its
+/// Operations of every public function of a module. They include its parts, `NAME_part_1` and so on, and the writer of its
 /// result, `NAME_into`.
 ///
-/// Panics where the text is not Rust, or holds what no emitted function may: another operator or call, an index that is no literal,
-/// a loop, a branch, a macro, an unsafe block.
+/// Panics where the text is not Rust, or holds a construct that no emitted function may hold. Such constructs are other operators
+/// or calls, an index that is no literal, loops, branches, macros and unsafe blocks.
 pub fn count(text: &str) -> BTreeMap<String, Operations> {
     let file = syn::parse_file(text).expect("the emitted text is Rust");
     let mut counted: BTreeMap<String, Operations> = BTreeMap::new();
@@ -81,7 +81,7 @@ impl<'a> Visit<'a> for Operations {
             | Expr::Path(_)
             | Expr::Struct(_)
             | Expr::Tuple(_) => (),
-            // What a function does that another one writes the result of.
+            // A function calls its result writer with a reference to an array of zeros.
             Expr::Reference(_) | Expr::Repeat(_) => (),
             _ => panic!("an expression that has no place in an emitted function"),
         }

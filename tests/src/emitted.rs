@@ -101,7 +101,7 @@ impl Functions for ThroughTraits {
 
 /// The module called `name` here.
 ///
-/// Panics where there is none.
+/// Panics where no robot has this name.
 pub fn emitted(name: &str) -> &'static Emitted {
     ALL.iter().find(|robot| robot.module == name).unwrap_or_else(|| panic!("no emitted module `{name}`"))
 }

@@ -8,16 +8,16 @@
 //! atom    = number | name | name ( sum ) | ( sum )
 //! ```
 //!
-//! A number is digits with an optional point and exponent, kept as text: what it means exactly is the reader's concern.
+//! A number is digits with an optional point and exponent, kept as text: the caller decides its exact value.
 
 use std::collections::BTreeMap;
 
 /// A formula as written.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Formula {
-    /// A decimal, as its digits stand.
+    /// A decimal, as written.
     Number(String),
-    /// A name; `pi` is one.
+    /// A name, such as `pi`.
     Name(String),
     /// A function of one argument: `sin`, `cos`, `sqrt`, ...
     Call(String, Box<Formula>),

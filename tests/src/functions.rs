@@ -46,15 +46,15 @@ pub trait Functions {
     fn call(&self, function: &str, arguments: &Arguments) -> Vec<f64>;
 }
 
-/// Names of all functions that can be emitted, in the order of the module, but for those that this one says it does not have, and that of
-/// friction under load where the description has none.
+/// Names of all functions that can be emitted, in the order of the module. Excluded are the `absent` functions, and
+/// `load_friction` where the description has no such friction.
 pub fn expected(absent: &[String], description: &str) -> Vec<String> {
     let loaded = [", load: ", "{load: "].iter().any(|key| description.contains(key));
     let asked = catalogue::functions().filter(|(quantity, _)| loaded || quantity.name != "load_friction");
     asked.map(|(quantity, with)| quantity.function_name(with)).filter(|name| !absent.contains(name)).collect()
 }
 
-/// The functions that a module says it does not have, in its head.
+/// The functions that the head of a module lists as missing.
 pub fn absent(text: &str) -> Vec<String> {
     let name = |line: &str| Some(line.strip_prefix("// There is no `")?.split_once('`')?.0.to_owned());
     text.lines().filter_map(name).collect()

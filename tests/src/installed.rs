@@ -1,7 +1,8 @@
-//! Programs of this machine that a test may need, and what is left out where they are not installed.
+//! Programs of this machine that a test may need, and the record of checks skipped without them.
 //!
-//! What is left out is said in a line, which also joins the file that `ARMGEN_SKIPPED` names; `.ci/run` prints that file at its end. Where
-//! `ARMGEN_REQUIRE_TOOLS` is set, it is a failure instead. Tests of other crates take this file in by its path; scripts have `tests/skip.sh`.
+//! A line reports each skipped check. The file that `ARMGEN_SKIPPED` names collects these lines, and `.ci/run` prints it at its
+//! end. Where `ARMGEN_REQUIRE_TOOLS` is set, a missing program is a failure. Tests of other crates include this file by its path;
+//! scripts have `tests/skip.sh`.
 #![allow(dead_code, missing_docs, unreachable_pub)]
 
 use std::io::Write;
@@ -12,7 +13,7 @@ pub fn runs(program: &str, arguments: &[&str]) -> bool {
     Command::new(program).args(arguments).output().is_ok_and(|output| output.status.success())
 }
 
-/// Whether a program is there; if not, what needs it is left out, and a line says which package of Debian brings it.
+/// Whether a program is installed. If not, reports the skipped check and the Debian package of the program.
 #[track_caller]
 pub fn there(program: &str, package: &str) -> bool {
     let found = runs(program, &["--version"]);
@@ -22,7 +23,7 @@ pub fn there(program: &str, package: &str) -> bool {
     found
 }
 
-/// Says that something is left out, and why.
+/// Reports a skipped check and its reason.
 ///
 /// # Panics
 ///

@@ -24,7 +24,7 @@ impl Interpreted {
         Interpreted::with_options(text, &Options::default())
     }
 
-    /// The same, generated as `options` say.
+    /// The same, generated with `options`.
     pub fn with_options(text: &str, options: &Options) -> Result<Self, String> {
         let source = Source::new("robot.yaml", text);
         let (valid, diagnostics) = validate::read(&source);

@@ -1,7 +1,7 @@
 //! Every function of a robot against the oracle, at one state.
 //!
-//! The plain functions are compared with the oracle's model of the description. The `_with` forms are compared with the oracle's model
-//! at the same parameters, and, because a base parameter is the generator's own choice, by linear identities that need no model:
+//! The plain functions are compared with the oracle's model of the description. The `_with` forms are compared with the oracle's model at the
+//! same parameters, and with linear identities that need no model, because base parameters are the generator's own choice:
 //!
 //! ```text
 //! tau(pi; dq, dqr, ddqr) = Y pi + tau_known          tau_0 = tau(pi; 0, 0, 0)
@@ -20,13 +20,13 @@ use crate::random::{self, Random, State};
 /// How close the judged functions have to come.
 #[derive(Clone, Copy, Debug)]
 pub struct Tolerance {
-    /// Of every function but forward dynamics, by `precision::deviation`.
+    /// Bound for every function except forward dynamics, by `precision::deviation`.
     pub values: f64,
-    /// Of the residual of forward dynamics.
+    /// Bound for the residual of forward dynamics.
     pub residual: f64,
 }
 
-/// A case: who is judged by which description, and where.
+/// A case: the robot, the description that judges it, and the state.
 struct Case<'a> {
     what: String,
     robot: &'a dyn Functions,
@@ -46,7 +46,7 @@ pub fn judge(what: &str, robot: &dyn Functions, text: &str, seed: u64, tolerance
     let case = Case { what, robot, description: &description, model, tolerance, seed };
     let mut state = random::state(robot.dof(), seed);
     case.judge_at(&state);
-    // At rest the sign of a rate is 0; a joint that stands still must not be pushed by its Coulomb friction.
+    // At rest the sign of a rate is 0; Coulomb friction must not push a joint at rest.
     for (i, rate) in state.dq.iter_mut().enumerate() {
         if (i as u64 + seed).is_multiple_of(2) {
             *rate = 0.0;
@@ -103,7 +103,7 @@ impl Case<'_> {
         self.expect_forward_dynamics("forward_dynamics", model, a.clone());
         self.judge_beyond(&a);
 
-        // The regressor of the file's choice, column by column where the oracle knows the columns; and what it adds up to.
+        // The regressor of the file's choice, column by column where the oracle knows the columns; and the torque Y pi + known.
         let y = robot.call("regressor", &a);
         let known = robot.call("known_torque", &a);
         match self.description.regressor(q, dq, dqr, ddqr) {
@@ -151,7 +151,7 @@ impl Case<'_> {
         }
         assert_eq!(rank(&base_rows), base.len(), "{}: base_regressor has full column rank", self.what);
         if all {
-            // Its columns are combinations of those of the regressor of all base parameters.
+            // Its columns are combinations of the columns of the regressor of all base parameters.
             assert_eq!(rank(&joined_rows), rank(&own_rows), "{}: base_regressor by regressor", self.what);
         }
 
@@ -241,14 +241,14 @@ impl Case<'_> {
         times(&rows, pi).iter().zip(self.robot.call("known_torque", a)).map(|(y, known)| y + known).collect()
     }
 
-    /// Base parameters: as many as the standard regressor has rank where friction is known apart from all else, spanning the same, independent.
+    /// Base parameters are independent, span the same space as the standard regressor, and are as many as its rank, with friction separated.
     fn judge_base_columns(&self) {
         let n = self.robot.dof();
         let (mut base, mut standard): (Matrix, Matrix) = Default::default();
         let units = |count: usize| (0..count).map(move |k| (0..count).map(|i| f64::from(u8::from(i == k))).collect::<Vec<f64>>());
         let count = self.robot.parameter_names().len();
         let standards = self.model.standard_parameters().len();
-        // Rows of friction, and below them those of all else; `friction[column][joint]`.
+        // Rows of friction, and below them the remaining rows; `friction[column][joint]`.
         let apart = |y: Matrix, friction: Vec<Vec<f64>>| -> Matrix {
             let friction: Matrix = (0..n).map(|i| friction.iter().map(|column| column[i]).collect()).collect();
             let rest = y.iter().zip(&friction).map(|(y, f)| y.iter().zip(f).map(|(y, f)| y - f).collect()).collect::<Matrix>();
@@ -273,7 +273,7 @@ impl Case<'_> {
     fn judge_parameters(&self) {
         let mut random = Random::new(self.seed ^ 0x0070_6900);
         let nominal = self.robot.nominal();
-        // Of the size of the nominal ones, some of the other sign: the equations are linear in all of them.
+        // Random parameters of nominal size, some with the opposite sign: the equations are linear in all parameters.
         let pi: Vec<f64> = nominal
             .iter()
             .map(|x| match x {
@@ -287,7 +287,7 @@ impl Case<'_> {
         }
         self.judge_identities(&a);
 
-        // B has to stay positive for its factors, so all parameters grow alike, but for a little.
+        // B has to stay positive definite for its factors, so all parameters grow by similar factors.
         let pi: Vec<f64> = nominal.iter().map(|x| x * 1.3 * random.real(1.0, 1.0 + NEAR_NOMINAL)).collect();
         let near = Arguments { pi: pi.clone(), ..a };
         match self.model_at(&pi) {
@@ -341,7 +341,7 @@ impl Case<'_> {
             // Rounded to the scale of tau, whatever is subtracted.
             let with_gravity: Vec<f64> = column(&b, n, j).iter().zip(&still).map(|(b, g)| b + g).collect();
             self.check("B_with by Y", &tau(&rest, &rest, &unit(n, j, 1.0)), &with_gravity);
-            // F at some rate, two and three times as much is F_v x + F_3 x³ and what does not depend on x, Stribeck friction having faded there.
+            // At x, 2 x and 3 x Stribeck friction has faded, so F is F_v x + F_3 x³ plus a constant.
             let x = 16.0;
             let [one, two, three] = [1.0, 2.0, 3.0].map(|times| friction(unit(n, j, times * x))[j]);
             let second = (three - two) - (two - one);

@@ -1,7 +1,7 @@
-//! A numerical model of an arm, written apart from the generator: what it finds, the generator has to find.
+//! A numerical model of an arm, written independently of the generator, whose results must agree.
 //!
-//! Another formulation in other code. The description is read again, into plain f64; every vector stands in the *base* frame;
-//! bodies are ten numbers about the origin of their frame. Newton-Euler (the book, Sect. 7.5, rotors included) is the only dynamics:
+//! Another formulation in other code. It reads the description again, into plain f64. Every vector is expressed in the *base* frame, and a
+//! body is ten numbers about the origin of its frame. Newton-Euler (the book, Sect. 7.5, rotors included) is the only dynamics:
 //!
 //! ```text
 //! tau  = NE(q, dq, ddq, g0) + F_v dq + F_c sign(dq)
@@ -66,9 +66,9 @@ pub struct Joint {
     pub prismatic: bool,
     /// a, alpha, d, theta of the row; the joint variable is added to d or theta.
     pub row: [f64; 4],
-    /// Of rows that are not Denavit and Hartenberg's: the link frame at q = 0 in the previous one, and the axis in it, of length 1.
+    /// For rows that are not Denavit-Hartenberg: the link frame at q = 0 in the previous frame, and the unit axis in it.
     pub origin: Option<(Placed, [f64; 3])>,
-    /// The link with what is attached to it, in its own frame.
+    /// The link with its attached bodies, in its own frame.
     pub link: Ten,
     /// The rotor on the previous link.
     pub motor: Option<Motor>,

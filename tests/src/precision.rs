@@ -10,13 +10,13 @@ pub const FORWARD_RESIDUAL: f64 = 1e-12;
 pub const WITHOUT_A_PASS: f64 = 1e-13;
 /// Emitted functions against the oracle on random arms up to eight joints, scaled alike.
 pub const ORACLE: f64 = 1e-12;
-/// Emitted functions in f32 against the oracle in f64: a state rounds by 6e-8 and so does every step; an energy is a sum of terms larger
-/// than itself, and loses most (5.7e-5 found at parameters of no body, all others stay below 5e-6).
+/// Emitted functions in f32 against the oracle in f64. A state rounds by 6e-8, and so does every step. An energy loses most, as a
+/// sum of terms larger than itself: 5.7e-5 was found at parameters that no body has. All others are below 5e-6.
 pub const SINGLE: f64 = 8e-5;
 /// Forward dynamics in f32, the residual (1.1e-6 found).
 pub const SINGLE_RESIDUAL: f64 = 5e-6;
-/// The derivatives of forward dynamics are taken at accelerations that are computed: their residuals are allowed so many times those of
-/// forward dynamics (8 found) up to this condition number of B, and more in proportion beyond.
+/// The derivatives of forward dynamics are taken at computed accelerations. Up to this condition number of B their residuals may
+/// be this many times the residuals of forward dynamics (8 found); beyond it, proportionally more.
 pub const AT_COMPUTED_ACCELERATIONS: f64 = 10.0;
 /// A condition number that costs nothing yet.
 pub const WELL_CONDITIONED: f64 = 100.0;
@@ -28,7 +28,7 @@ pub const NEAR_NOMINAL: f64 = 1e-4;
 pub const CHECK_STATE: f64 = 1e-12;
 /// Two formulations inside the oracle, where one differentiates by dual numbers: exact to rounding.
 pub const DUAL: f64 = 1e-12;
-/// Pivots below this part of the largest count as zero in a numerical rank: far above rounding, far below what a motion excites.
+/// Pivots below this part of the largest count as zero in a numerical rank: far above rounding, far below excited directions.
 pub const RANK: f64 = 1e-8;
 
 /// Largest |a - b| over max(1, largest |b|); infinite where the shapes differ or a value is not finite.

@@ -51,7 +51,7 @@ impl Project {
         let cargo = std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into());
         let mut command = Command::new(cargo);
         command.args(arguments).arg("--offline").current_dir(&self.folder);
-        // What the cargo that runs this test has set for itself.
+        // Variables that the running cargo has set for itself.
         for (name, _) in std::env::vars_os() {
             let text = name.to_string_lossy();
             if text.starts_with("CARGO_PKG_") || text.starts_with("CARGO_MANIFEST") {
@@ -61,7 +61,7 @@ impl Project {
         command.env("CARGO_TARGET_DIR", &self.target).env("CARGO_TERM_COLOR", "never").output().expect("cargo starts")
     }
 
-    /// Runs cargo and wants it to succeed; gives what the program printed.
+    /// Runs cargo, which must succeed; returns the output of the program.
     #[track_caller]
     pub fn succeed(&self, arguments: &[&str]) -> String {
         let output = self.cargo(arguments);
@@ -69,7 +69,7 @@ impl Project {
         text(&output.stdout)
     }
 
-    /// Runs cargo and wants it to fail; gives what it says.
+    /// Runs cargo, which must fail; returns its messages.
     #[track_caller]
     pub fn fail(&self, arguments: &[&str]) -> String {
         let output = self.cargo(arguments);

@@ -1,4 +1,4 @@
-//! Values that another library computed: `data/reference`, whose README says from where.
+//! Values that another library computed: `data/reference`, whose README gives their origin.
 
 use serde_derive::Deserialize;
 
@@ -69,7 +69,7 @@ pub fn reference(robot: &str) -> Reference {
 
 /// Text of a description in `robots/`, by its name without the ending.
 ///
-/// Panics where there is none.
+/// Panics where no robot has this name.
 pub fn description(robot: &str) -> String {
     let path = format!("{}/../robots/{robot}.yaml", env!("CARGO_MANIFEST_DIR"));
     std::fs::read_to_string(&path).unwrap_or_else(|error| panic!("robots/{robot}.yaml: {error}"))
@@ -79,7 +79,7 @@ pub fn description(robot: &str) -> String {
 mod tests {
     use super::*;
 
-    /// Every robot of `robots/` says in its first lines where its numbers are from.
+    /// Every robot of `robots/` gives the source of its numbers in its first lines.
     #[test]
     fn sources() {
         let folder = format!("{}/../robots", env!("CARGO_MANIFEST_DIR"));

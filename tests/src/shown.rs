@@ -31,13 +31,13 @@ pub struct Quantity {
     pub columns: usize,
     /// Formulas by rows.
     pub entries: Vec<Vec<String>>,
-    /// `closed`, or `program`: then `entries` stand on `steps`.
+    /// `closed`, or `program`, whose `entries` use `steps`.
     pub form: String,
     /// Numbered steps, name and formula, each using earlier ones only.
     pub steps: Option<Vec<(String, String)>>,
-    /// Of the determinant: its factors.
+    /// Factors of the determinant.
     pub factors: Option<Vec<String>>,
-    /// Of the determinant: where each factor vanishes, null where it depends on more than one angle.
+    /// Where each factor of the determinant vanishes; null where it depends on more than one angle.
     pub singular: Option<Vec<Option<String>>>,
 }
 

@@ -3,10 +3,10 @@
 /// A function: its name and the names of its arguments, `&self` left out.
 pub type Signature = (String, Vec<String>);
 
-/// What the name of a function ends in that writes its result where the caller says.
+/// Suffix of functions that write their result to a place of the caller.
 pub const INTO: &str = "_into";
 
-/// The functions behind each `start`, which ends where the name begins.
+/// The signatures of the functions after each occurrence of `start`, which ends where the name begins.
 pub fn signatures(text: &str, start: &str) -> Vec<Signature> {
     let signature = |rest: &str| {
         let (name, rest) = rest.split_once('(')?;

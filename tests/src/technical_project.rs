@@ -114,7 +114,7 @@ fn common() -> BTreeMap<&'static str, Formulas> {
     ])
 }
 
-/// Y(q, dq, dqr, ddqr), 4 x 14; what is not listed is zero.
+/// Y(q, dq, dqr, ddqr), 4 x 14; entries not listed are zero.
 fn regressor() -> Formulas {
     let (a, k1, k2) = ("(ddqr1+ddqr2)", "(dq2*dqr1 + (dq1+dq2)*dqr2)", "(dq1*dqr1)");
     let rows: [&[(&str, String)]; 4] = [
@@ -166,7 +166,7 @@ pub fn loaded() -> BTreeMap<&'static str, Formulas> {
     with_numbers("12.5*cos(q2) + 12013/500", "6.25*cos(q2) + 1252/125", "1252/125", "55/2", "6.25*sin(q2)", "-147.15")
 }
 
-/// B, C, g and friction, where only these numbers differ; h of C stands in the report as 5 s (6.25 s).
+/// B, C, g and friction, where only these numbers differ; the report gives h of C as 5 s (6.25 s).
 fn with_numbers(b11: &str, b12: &str, b22: &str, b33: &str, h: &str, g3: &str) -> BTreeMap<&'static str, Formulas> {
     let (c11, c12, c21) = (format!("-({h})*dq2"), format!("-({h})*(dq1+dq2)"), format!("({h})*dq1"));
     BTreeMap::from([
@@ -341,7 +341,7 @@ fn drift(shown: &Shown) -> Result<Vec<String>, String> {
     Ok(entries_differ("geometric_jacobian_dot * dq", &product(&task, &column("dq")), &expected))
 }
 
-/// The potential energy but for a constant: its level is a matter of taste.
+/// The potential energy up to a constant: its zero is arbitrary.
 fn potential(shown: &Shown, reading: Reading) -> Result<Vec<String>, String> {
     let names = if reading == Reading::Nominal { nominal_names() } else { Names::new() };
     let expected = Exact::read_with(POTENTIAL_ENERGY, &names)?;
@@ -352,7 +352,7 @@ fn potential(shown: &Shown, reading: Reading) -> Result<Vec<String>, String> {
     Ok(if left.is_empty() { vec![] } else { vec![format!("potential_energy = {found}, not {expected} and a constant")] })
 }
 
-/// The determinant's factors multiply to it but for a constant, and it vanishes at multiples of pi of q2 only.
+/// The product of the factors is the determinant up to a constant; it vanishes only at multiples of pi of q2.
 fn singularity(shown: &Shown) -> Result<Vec<String>, String> {
     let determinant = shown.get("determinant")?;
     let mut faults = Vec::new();
@@ -453,7 +453,7 @@ fn at_check_state(shown: &Shown, reading: Reading) -> Result<Vec<String>, String
         names.insert("m_l3".to_owned(), 15.0);
         check("forward dynamics with load", &vector(value("forward_dynamics", &names)?), &state.ddq_loaded);
     } else {
-        // Without load: what the oracle's model of the data sheet finds.
+        // Without load the oracle's model of the data sheet gives the expected value.
         let model = crate::oracle::Description::read(ROBOT)?.model()?;
         let expected = model.forward_dynamics(&state.q, &state.dq, &[0.0; 4]).ok_or("singular")?;
         check("forward dynamics", &vector(value("forward_dynamics", &names)?), &expected);

@@ -36,13 +36,13 @@ pub type Names = BTreeMap<String, Exact>;
 impl Exact {
     /// Reads a plain formula; every name except `pi` is a variable (and an angle inside `sin` and `cos`).
     ///
-    /// Errors: the syntax; an unknown function; an angle that is no integer combination of names plus a constant;
-    /// a power that is no small integer; a root of something that is no rational >= 0; a division by zero.
+    /// Errors: wrong syntax; an unknown function; a division by zero. An angle must be an integer combination of names plus a
+    /// constant, a power a small integer, and the argument of a root a rational >= 0.
     pub fn read(text: &str) -> Result<Self, String> {
         Self::read_with(text, &Names::new())
     }
 
-    /// Reads a plain formula in which some names stand for expressions.
+    /// Reads a plain formula in which some names denote expressions.
     pub fn read_with(text: &str, names: &Names) -> Result<Self, String> {
         parse::read(text, names).map_err(|error| if error.contains('`') { error } else { format!("{error} in `{text}`") })
     }

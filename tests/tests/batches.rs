@@ -1,4 +1,4 @@
-//! The functions for many states give each state the bits that the function for one state gives it, whatever stands in the other lanes.
+//! The functions for many states return the same bits for a state as the function for one state, whatever the other lanes hold.
 
 /// Compares the functions of one emitted module, for more states than fill whole blocks.
 macro_rules! check {
@@ -40,7 +40,7 @@ macro_rules! check {
                     let one: Vec<_> = (0..COUNT).map(|k| $function($(&states.$argument[k]),*)).collect();
                     let mut many = vec![$function($(&states.$argument[0]),*); COUNT];
                     batch::$function($(&states.$argument,)* &mut many);
-                    // As text, which tells the zeros apart and is the same for what is not a number.
+                    // Compares text, which distinguishes the zeros and is the same for every NaN.
                     assert_eq!(format!("{one:?}"), format!("{many:?}"), "{}", stringify!($function));
                 })*
             }

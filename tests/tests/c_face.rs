@@ -1,4 +1,4 @@
-//! The C face as a stranger uses it: a static library of its own without `std`, and a C program that links it and checks values.
+//! The C interface in a project of its own: a static library of its own without `std`, and a C program that links it and checks values.
 
 use armgen_codegen::emit::Language;
 use armgen_codegen::kinds::Scalar;
@@ -62,7 +62,7 @@ fn generate_of(robot: &str, scalar: Scalar, functions: Selection) -> Generated {
     generate(&source, &Options { scalar, functions, ..Options::default() }).0.unwrap()
 }
 
-/// Runs a command; what it printed if it failed, or warned.
+/// Runs a command; panics with its output if it failed or warned.
 #[track_caller]
 fn run(command: &mut Command) {
     let output = command.output().unwrap_or_else(|error| panic!("{command:?}: {error}"));

@@ -1,5 +1,5 @@
-//! The three ways to a robot in a project of one's own, each tried as a stranger's project: a copied file, the crate `armgen-generated`,
-//! and a build script; and when a build script runs. The snippets of docs/rust.md are tried as they are printed.
+//! Tries the three ways to use a robot in another project: a copied file, the crate `armgen-generated`, and a build script. Also
+//! checks when a build script runs. The snippets of docs/rust.md are compiled as printed.
 
 use std::path::Path;
 
@@ -12,7 +12,7 @@ use armgen_tests::precision::{agree, CHECK_STATE, ORACLE, SINGLE};
 use armgen_tests::project::{modified, workspace, Project};
 use armgen_tests::{reference, technical_project};
 
-/// Where the strangers live. They share what is built for them, so cargo lets one at a time go on.
+/// Folders of the projects. They share a target folder, so cargo builds one at a time.
 fn stranger(name: &str) -> Project {
     Project::new(&Path::new(env!("CARGO_TARGET_TMPDIR")).join("strangers"), name)
 }
@@ -95,7 +95,7 @@ struct State {
     ddq: [f64; 4],
 }
 
-/// A project that depends on `armgen-generated`, whatever robot stands in robot.yaml; without and with the runtime's traits.
+/// A project that depends on `armgen-generated`, with any robot in robot.yaml, without and with the runtime's traits.
 #[test]
 #[ignore = "wide"]
 fn the_generated_crate_is_a_dependency() {
@@ -193,7 +193,7 @@ fn main() {
     assert_eq!(project.succeed(&["tree", "--edges", "normal", "--prefix", "none"]).matches("armgen-codegen").count(), 0);
 }
 
-/// The crate `generated` with a robot.yaml beside it, in a workspace of its own: when its build script runs, and what a wrong file gets.
+/// The crate `generated` with its robot.yaml in a workspace of its own: when its build script runs, and the error of a wrong file.
 #[test]
 #[ignore = "wide"]
 fn the_robot_follows_its_file_and_nothing_else() {
@@ -240,7 +240,7 @@ fn the_robot_follows_its_file_and_nothing_else() {
     assert!(modified(&path) > first, "the generator did not run");
     assert!(text(&path) == generate(&edited, Scalar::F64), "the emitted module is not that of the edited robot.yaml");
 
-    // A wrong one fails the build and says where: line and column of the value, and the line itself.
+    // A wrong description fails the build and gives the place: line and column of the value, and the line itself.
     let wrong = scara.replace("    a: 0.5 ", "    a: half ");
     let line = wrong.lines().position(|line| line.contains("half")).expect("the fault") + 1;
     project.write("robot.yaml", &wrong);

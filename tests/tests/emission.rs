@@ -1,4 +1,4 @@
-//! The emitted text: what it costs, what stands in it, and that nothing but the description decides it.
+//! The emitted text: its cost, its contents, and that it depends on the description alone.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
@@ -19,7 +19,7 @@ use armgen_tests::{random, reference};
 use quote::ToTokens;
 use syn::visit::{self, Visit};
 
-/// What the generator says that a function costs is what stands in the text.
+/// The generator's cost of a function equals the operations in the text.
 #[test]
 #[ignore = "wide"]
 fn the_text_costs_what_the_program_says() {
@@ -57,7 +57,7 @@ fn the_scara_is_cheap() {
     for (quantity, with) in catalogue::functions() {
         let name = quantity.function_name(with);
         let basic = quantity.interface.is_some_and(|name| ["Kinematics", "Dynamics", "Regressor"].contains(&name));
-        // Of friction that grows with the load it has none.
+        // No basic function except forward dynamics may divide; the SCARA has no friction that grows with the load, which divides.
         let divides = counted.get(&name).is_some_and(|operations| operations.div > 0);
         assert!(!divides || !basic || name.starts_with("forward_dynamics"), "{name} divides and inverts no B");
     }
@@ -201,7 +201,7 @@ fn no_constant_is_spurious() {
     for robot in ALL.iter().filter(|robot| !robot.narrow) {
         let mut floats = Floats::default();
         let mut file = syn::parse_file(robot.text).expect("Rust");
-        // What is private has constants of its own, as they stand in its source.
+        // The constants of private functions come from their source.
         file.items.retain(|item| !matches!(item, syn::Item::Fn(function) if function.sig.ident == "stribeck"));
         floats.visit_file(&file);
         assert!(floats.0.len() > 20, "{}", robot.module);
@@ -240,7 +240,7 @@ fn an_edit_of_a_mass_reaches_all_that_is_built_on_it() {
         before.iter().filter(|(name, body)| after[*name] != **body).map(|(name, _)| name.trim_end_matches(INTO)).collect();
     let s = random::state(4, 15);
     let a = Arguments { q: s.q.clone(), dq: s.dq.clone(), ddq: s.ddq.clone(), ..Arguments::default() };
-    // What has another value by the oracle, what it knows no formula of, and the values of the parameters.
+    // Expected changes: functions whose value changes by the oracle, functions without a formula in the oracle, and parameter values.
     let models = [&text, &edited].map(|text| Description::read(text).and_then(|d| d.model()).expect("valid"));
     let depends = |name: &&str| models[0].value(name, &a) != models[1].value(name, &a);
     let mut expected: BTreeSet<&str> = catalogue::quantities().map(|quantity| quantity.name).filter(depends).collect();

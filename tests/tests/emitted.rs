@@ -171,7 +171,7 @@ fn obey_the_laws() {
     }
 }
 
-/// Base parameters leave a constant of the potential energy out: its changes are those of the arm, itself it is another.
+/// Base parameters omit a constant of the potential energy: differences of the energy agree with the arm, its value does not.
 #[test]
 fn energies_of_base_parameters_change_as_those_of_the_arm() {
     let robot = emitted("base_set");
@@ -187,7 +187,7 @@ fn energies_of_base_parameters_change_as_those_of_the_arm() {
     assert!((with - plain).abs() > 1.0, "U_with {with} and U {plain} J are the same");
 }
 
-/// A robot of which one function is wrong in one entry, by little.
+/// A robot with a small error in one entry of one function.
 struct Planted<'a> {
     robot: &'a Emitted,
     function: &'a str,

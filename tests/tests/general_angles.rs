@@ -1,7 +1,7 @@
 //! Arms whose angles are all general decimals: what their constants take grows with the joints as for right angles.
 //!
-//! Multiplied out, a product of rotations by general angles would double its terms with each of them. What is bounded here are counts:
-//! terms of constants, definitions that they share, the lengths of their texts, operations of the functions.
+//! Multiplied out, a product of rotations by general angles would double its terms with each rotation. The test bounds four
+//! counts: terms of constants, definitions that they share, lengths of their texts, and operations of the functions.
 
 use armgen_codegen::exact::Definitions;
 use armgen_codegen::program::Cost;
@@ -10,7 +10,7 @@ use armgen_codegen::source::Source;
 use armgen_codegen::{validate, Model};
 use armgen_tests::random::chain_with_general_angles;
 
-/// What the constants of an arm's functions take.
+/// Size of the constants of an arm's functions.
 #[derive(Debug)]
 struct Size {
     /// Terms of the longest constant.
@@ -38,8 +38,8 @@ fn size(joints: &str, functions: &[&str]) -> Size {
     }
 }
 
-/// Sizes of twice as many joints each time: at most so many times those before. They grow with about the third power of the joints;
-/// exponential growth would square them.
+/// Sizes as the number of joints doubles: each at most this factor times the one before. They grow with about the third power of
+/// the joints; exponential growth would square them.
 #[track_caller]
 fn check(kind: &str, joints: [usize; 3], functions: &[&str], most: usize) {
     let sizes = joints.map(|n| size(&kind.repeat(n), functions));

@@ -1,7 +1,7 @@
-//! No text makes the reader or the generator panic or hang: every prefix of a valid file, many files with one byte changed, and files
-//! made to cost much: long and deep ones, aliases of long texts, numbers whose exact value grows, sums that multiply out.
+//! No text makes the reader or the generator panic or hang. The texts are every prefix of a valid file, many files with one changed byte, and
+//! expensive files. Expensive files are long or deep, alias long texts, hold numbers whose exact value grows, or sums that multiply out.
 //!
-//! No clock is asked, for a busy machine says nothing about the program: work is bounded by counts, so that each of these ends.
+//! Counts, not a clock, bound the work: times on a busy machine prove nothing about the program.
 
 use std::path::Path;
 
@@ -15,7 +15,7 @@ fn robot(name: &str) -> Vec<u8> {
     std::fs::read(Path::new(env!("CARGO_MANIFEST_DIR")).join(name)).expect("a robot")
 }
 
-/// Reads the bytes as a file and renders what is said about them; whether they describe an arm.
+/// Reads the bytes as a file and renders its diagnostics; returns whether they describe an arm.
 fn read(bytes: &[u8]) -> bool {
     let source = Source::new("robot.yaml", String::from_utf8_lossy(bytes));
     let (valid, diagnostics) = validate::read(&source);
@@ -39,7 +39,7 @@ fn generate(bytes: &[u8]) {
     }
 }
 
-/// Of the files that are changed in so many rounds, those that still describe an arm go through the generator, as many as that.
+/// Changes a file `rounds` times. The first `generated` results that still describe an arm go through the generator.
 fn change(name: &str, seed: u64, rounds: usize, mut generated: usize) {
     let text = robot(name);
     let mut sequence = Sequence(seed);

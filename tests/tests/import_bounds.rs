@@ -1,5 +1,6 @@
-//! What `armgen import` says that its snapping moves, against what it moves: both arms, digit by digit and snapped, in the oracle at random
-//! states of the box. A bound is never exceeded, and at most so many times the worst of these states.
+//! Compares the bounds that `armgen import` reports for its snapping with the true differences. The oracle evaluates both arms,
+//! digit by digit and snapped, at random states of the box. A difference never exceeds its bound, and a bound is at most a fixed
+//! multiple of the largest difference.
 
 use std::fmt::Write;
 
@@ -7,7 +8,8 @@ use armgen_import::{import, Options};
 use armgen_tests::oracle::{Description, Model};
 use armgen_tests::random::Random;
 
-/// Of a position or an orientation; of a torque, in which every joint is thought at its largest velocity in the worst direction.
+/// Largest allowed ratio of bound to difference, for positions, orientations and torques. The bound of a torque assumes that
+/// every joint moves at its largest velocity in the worst direction.
 const IDLE: [f64; 3] = [10.0, 10.0, 500.0];
 const STATES: usize = 600;
 

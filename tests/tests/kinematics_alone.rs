@@ -1,4 +1,4 @@
-//! An arm of which nothing has mass or inertia: its module has frames, Jacobians and their rates, and the trait that goes with them.
+//! An arm without any mass or inertia: its module has frames, Jacobians and their rates, and the matching trait.
 
 use armgen_codegen::source::Source;
 use armgen_codegen::{generate, Options};

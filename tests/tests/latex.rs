@@ -1,4 +1,4 @@
-//! What `show --format latex` prints is LaTeX: every formula is read by a parser of LaTeX, and between formulas stands what may stand there.
+//! `show --format latex` prints valid LaTeX: a LaTeX parser reads every formula, and the text between formulas is allowed there.
 
 use std::path::Path;
 
@@ -35,7 +35,7 @@ fn is_text(text: &str) -> Result<(), String> {
     Ok(())
 }
 
-/// Reads a formula, and says what is wrong with it.
+/// Parses a formula; returns its fault, if any.
 fn read(formula: &str) -> Result<(), String> {
     let storage = Storage::new();
     let fault = Parser::new(formula, &storage).find_map(Result::err).map(|error| format!("{error} in {formula}"));

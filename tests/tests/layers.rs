@@ -1,11 +1,12 @@
-//! Who may name whom. ARCHITECTURE.md tells the layers of every crate; here they are written out and held against the sources.
+//! Allowed dependencies between modules. ARCHITECTURE.md describes the layers of every crate; this test lists them and compares
+//! them with the sources.
 //!
 //! A file is a module. Every path in it that leads to another module of its crate is an arrow, imports that are handed on (`use`) being
 //! followed to where the name is declared. Two rules hold:
 //!
 //! - between the top modules of a crate there are the arrows of [`LAYERS`] and no others;
-//! - at every level, modules beside each other form an order: no two of them depend on each other, directly or through others. A module
-//!   and the files of its folder are one module to those outside of it.
+//! - at every level, sibling modules form an order: no two of them depend on each other, directly or through others. Seen from
+//!   outside, a module and the files of its folder are one module.
 //!
 //! Tests (`#[cfg(test)]`) may name whatever they like.
 
@@ -18,7 +19,7 @@ use syn::visit::Visit;
 /// A module by its path from the root of the crate; the root itself is empty.
 type Module = Vec<String>;
 
-/// What the modules of a crate may name, lowest first: a module may name only modules whose lines stand above its own.
+/// Allowed dependencies of the modules of a crate, lowest first: a module may only name modules listed above it.
 type Layers = &'static [(&'static str, &'static [&'static str])];
 
 /// Exact numbers, expressions, their rewriting; no robot.
@@ -134,7 +135,7 @@ const PAGE: Layers = &[
 const COMMANDS: Layers =
     &[("input", &[]), ("companions", &[]), ("file_names", &[]), ("commands", &["companions", "file_names", "input"])];
 
-/// From a text and a description to a verdict; `docs/certificate.md` says what each step is for.
+/// From a text and a description to a verdict; `docs/certificate.md` explains each step.
 const VERIFY: Layers = &[
     ("check", &[]),
     ("element", &[]),
@@ -304,11 +305,11 @@ const VERIFY: Layers = &[
     ),
 ];
 
-/// What a file says: modules that it declares, names that it brings into scope, paths that it uses.
+/// Contents of a file: modules that it declares, names that it brings into scope, paths that it uses.
 #[derive(Default)]
 struct File {
     children: BTreeSet<String>,
-    /// Name in this module, and the path that it stands for as written.
+    /// Name in this module, and the path that it denotes, as written.
     imports: BTreeMap<String, Vec<String>>,
     paths: Vec<Vec<String>>,
     /// How deep in modules within the file the visitor is.
@@ -374,7 +375,7 @@ impl<'ast> Visit<'ast> for File {
         }
     }
 
-    /// What a macro is given are tokens: paths from the root of the crate are found among them.
+    /// The arguments of a macro are tokens; finds paths from the root of the crate among them.
     fn visit_macro(&mut self, item: &'ast syn::Macro) {
         let text = item.tokens.to_string().replace(' ', "");
         for (start, _) in text.match_indices("crate::") {
@@ -414,7 +415,7 @@ impl Crate {
         Self { files }
     }
 
-    /// The module in which the thing that a path names is declared; none for what is not of this crate.
+    /// The module that declares the item of a path; `None` for items of other crates.
     fn target(&self, from: &Module, path: &[String], depth: usize) -> Option<Module> {
         let (mut at, rest) = match path.first()?.as_str() {
             "crate" => (Module::new(), &path[1..]),
@@ -530,7 +531,7 @@ fn circle(arrows: &BTreeSet<(String, String)>) -> Option<Vec<String>> {
     }
 }
 
-/// What is wrong with the arrows of a crate: those that no layer allows, those that are allowed and not there, circles.
+/// Faults of the dependencies of a crate: forbidden ones, allowed but unused ones, and cycles.
 fn faults(read: &Crate, layers: Option<Layers>) -> Vec<String> {
     let mut faults = Vec::new();
     if let Some(layers) = layers {
@@ -583,8 +584,8 @@ const CRATES: [(&str, Layers); 9] = [
     ("verify", VERIFY),
 ];
 
-/// Crates whose modules have no layers: those of one file, the judges, and the building blocks of inverse kinematics, which are many files of
-/// one module; `inverse-kinematics/tests/texts.rs` holds those to what each says that it needs.
+/// Crates whose modules have no layers: crates of one file, the judges, and the building blocks of inverse kinematics, which are
+/// many files of one module. `inverse-kinematics/tests/texts.rs` checks the declared needs of these blocks.
 const OTHERS: [&str; 9] =
     ["certify", "cli/run", "cli/terminal", "generated", "inverse-kinematics", "lab", "tests", "tests/calls", "tests/experiments"];
 
@@ -598,7 +599,7 @@ fn modules_name_those_of_lower_layers_alone() {
     }
 }
 
-/// The crates that a crate and its build script stand on, itself among them.
+/// The dependencies of a crate and its build script, itself included.
 fn tree(package: &str) -> String {
     let cargo = std::process::Command::new(env!("CARGO"))
         .args(["tree", "--offline", "--package", package, "--edges", "normal,build", "--prefix", "none"])
@@ -636,7 +637,7 @@ fn every_crate_of_the_workspace_is_looked_at() {
     assert_eq!(members, looked_at.collect());
 }
 
-/// The printers know no mathematics, and no derivation knows a language: the arrows that must not be there, whatever the table says.
+/// The printers know no mathematics, and no derivation knows a language: these dependencies are forbidden, whatever the table allows.
 #[test]
 fn what_is_absent_by_design_is_absent() {
     let may = |from: &str, to: &str| CODEGEN.iter().any(|(module, may)| *module == from && may.contains(&to));

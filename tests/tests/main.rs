@@ -1,4 +1,4 @@
-//! The emitted modules, and the project around them. One program for all tests of the crate: a file beside this one is a module here.
+//! The emitted modules, and the project around them. One program for all tests of the crate: the other files of this folder are its modules.
 
 mod bad_files;
 mod batches;

@@ -108,7 +108,7 @@ tool: {{xyz: [{a2}, 0, 0]}}
     }
 }
 
-/// Rotors of an arm with crossed axes: where the axis of a rotor stands by default and by choice, in both conventions.
+/// Rotors of an arm with crossed axes: the axis of a rotor by default and by choice, in both conventions.
 #[test]
 fn rotors_turn_about_the_axis_that_the_file_says() {
     let arm = |convention: &str, alphas: [&str; 2], axis: &str| {
@@ -154,7 +154,7 @@ fn the_default_axis_is_the_joint_axis() {
     agree("B", &flat(&arm.inertia_matrix(&[0.4, 0.0, 0.9])), &sum(&links, &rotor), DUAL);
 }
 
-/// A load at a turned tool of a pendulum, in closed form: it stands at (0.3, 0.1) of the link.
+/// A load at a turned tool of a pendulum, in closed form: it lies at (0.3, 0.1) in the link frame.
 #[test]
 fn a_load_rides_in_the_end_effector_frame() {
     let arm = model(
@@ -167,7 +167,7 @@ fn a_load_rides_in_the_end_effector_frame() {
     agree("g", &arm.gravity(&[q]), &[2.0 * 9.81 * (0.3 * q.cos() - 0.1 * q.sin())], DUAL);
 }
 
-/// The standard parameters in their order; what is not among them is the rotors' mass alone.
+/// The standard parameters in their order; only the rotors' mass is not among them.
 #[test]
 fn standard_parameters() {
     let arm = |name: &str| model(random::tricky().iter().find(|(other, _)| *other == name).expect("a tricky arm").1);
@@ -233,7 +233,7 @@ fn check_laws(what: &str, text: &str, state: &State) {
     let tau_4 = arm.inverse_dynamics_4(q, dq, dqr, ddqr);
     let viscous: Vec<f64> = arm.viscous().iter().zip(dqr).map(|(f, v)| f * v).collect();
     let coulomb = sum(&arm.friction(dq), &arm.viscous().iter().zip(dq).map(|(f, v)| -f * v).collect::<Vec<_>>());
-    // Of cubic friction the four-argument form has F_3 dq² dqr.
+    // With cubic friction the four-argument form has the term F_3 dq² dqr.
     let cubic = arm.joints.iter().zip(dq).zip(dqr).map(|((joint, v), r)| joint.cubic.unwrap_or(0.0) * v * v * (r - v));
     let friction = sum(&sum(&viscous, &coulomb), &cubic.collect::<Vec<f64>>());
     let right = sum(&sum(&times(&b, ddqr), &times(&c, dqr)), &sum(&friction, &g));

@@ -1,5 +1,5 @@
-//! What a module computes does not depend on the passes that made it cheap: without any one of them, and without all, it agrees with the stored
-//! reference values as with all of them, and with the module of all passes but for the last digits.
+//! The values of a module do not depend on the passes that reduce its cost. Without any single pass, and without all passes, it
+//! agrees with the stored reference values equally well. It agrees with the module of all passes except for the last digits.
 //!
 //! `cargo test -p armgen-tests --test all passes -- --ignored --nocapture` prints by how much: the table in docs/passes.md.
 

@@ -16,9 +16,10 @@ use armgen_verify::verify_with;
 /// How many arms, from seed 0 on; another number, or seeds such as 200..500, with `ARMGEN_RANDOM_ARMS`.
 const ARMS: u64 = 24;
 
-/// In 96 the acceleration of the slide cancels in the torque of the first joint; in 116 accelerations at a rational point have very many
-/// bits; in 187 a rate cancels in a column of a base parameter; 292 divides by the negative of a pivot; in 360 an offset of friction, an
-/// armature and the weight on a slide are constant torques, which the base parameters of gravity and friction share out.
+/// Seeds that exposed faults. In 96 the acceleration of the slide cancels in the torque of the first joint. In 116 accelerations
+/// at a rational point have very many bits. In 187 a rate cancels in a column of a base parameter. 292 divides by the negative of
+/// a pivot. In 360 an offset of friction, an armature and the weight on a slide are constant torques, which the base parameters
+/// of gravity and friction share out.
 const SINGULAR: [u64; 5] = [96, 116, 187, 292, 360];
 
 fn arms() -> impl Iterator<Item = u64> {

@@ -35,13 +35,13 @@ mod figures;
 const SCARA: [f64; 4] = [0.3, 1.1, 0.2, 0.4];
 const PUMA: [f64; 6] = [0.2, 0.5, -0.8, 0.7, 0.9, -0.4];
 
-/// Every choice of these arms is a sign; those of the general arm are none.
+/// Every branch of these arms is a sign; branches of the general arm are not.
 #[test]
 fn signs_tell_branches_apart() {
     assert_eq!((scara4::Nominal.branch_signs(), puma560::Nominal.branch_signs(), ur5::Nominal.branch_signs()), (1, 7, 7));
 }
 
-/// The trait says what the emitted function says, in the runtime's types.
+/// The trait returns the result of the emitted function, in the runtime's types.
 #[test]
 fn the_trait_gives_what_the_function_gives() {
     let t = puma560::direct_kinematics(&PUMA);
@@ -60,8 +60,8 @@ fn the_trait_gives_what_the_function_gives() {
     assert!(none.miss > 7.0 && none.miss < 9.5, "{}", none.miss);
 }
 
-/// The labels say signs: `elbow` that of the angle between the links, q2 of the SCARA, whose loop is read backwards; `wrist` that of sin q5 of
-/// the Puma, whose loop is read forwards.
+/// The labels are signs. `elbow` is the sign of the angle between the links: q2 of the SCARA, whose loop is read backwards.
+/// `wrist` is the sign of sin q5 of the Puma, whose loop is read forwards.
 #[test]
 fn branches_have_the_signs_that_they_say() {
     let labels = postures_scara4_f64_ik::BRANCHES;
@@ -108,7 +108,7 @@ fn a_line_out_of_reach_ends_on_the_circle() {
     assert!(asked < 400 && worst < 1e-13, "{asked} {worst:e}");
 }
 
-/// The same in single precision, to what that can tell.
+/// The same in single precision, to its accuracy.
 #[test]
 fn in_single_precision_too() {
     let start = SVector::from(SCARA.map(|x| x as f32));
@@ -129,7 +129,7 @@ fn a_line_through_the_first_axis_ends_there() {
     let ended = follow(&scara4::Nominal, &path, &start, 50, |_, _| ());
     assert!(matches!(ended.end, Some(BranchEnd::Singular | BranchEnd::Continuum)), "{ended:?}");
     assert!(ended.s <= 0.25 && 0.25 - ended.s < 1.1e-9, "{ended:?}");
-    // Beside the axis it goes on, and the elbow with it.
+    // Off the axis the branch continues, and the elbow with it.
     let path = line(&scara4::Nominal, &start, Vector3::new(-4.0 * position.x, -4.0 * position.y + 0.3, 0.0));
     let beside = follow(&scara4::Nominal, &path, &start, 50, |s, q| {
         assert!((Pose::of(&scara4::Nominal, q).position - path(s).position).amax() < 1e-13);
@@ -298,7 +298,7 @@ fn what_is_no_path_is_said() {
     assert!(why == Some(BranchEnd::Jump) && s < 0.5 && 0.5 - s < 1.1e-9, "{why:?} {s}");
 }
 
-/// The program that stands in docs/inverse-kinematics.md, and the emitted test, in a project of their own.
+/// The program of docs/inverse-kinematics.md, and the emitted test, in a project of their own.
 #[test]
 #[ignore = "wide"]
 fn the_program_of_the_page_runs() {

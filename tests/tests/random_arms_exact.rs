@@ -1,5 +1,5 @@
-//! Random arms through the generator: every emitted text equals the equations and keeps every identity, exactly; and some are compiled by
-//! cargo as a user's own crate and judged by the oracle.
+//! Random arms through the generator. Every emitted text exactly equals the equations and keeps every identity. Cargo compiles
+//! some as a user's own crate, which the oracle judges.
 //!
 //! | variable | what | unless given |
 //! |---|---|---:|
@@ -37,14 +37,14 @@ const IN_A_CRATE: u64 = 20;
 const PERCENT: [i64; 8] = [36, 28, 12, 8, 5, 4, 4, 3];
 /// Points in prime fields, each of its own prime.
 const POINTS: usize = 2;
-/// One in so many arms is run at a rational point too, if it has no more joints than so many.
+/// Interval of the arms that also run at a rational point, and their largest number of joints.
 const EXACT: (u64, usize) = (16, 4);
 
 fn asked(variable: &str, otherwise: u64) -> u64 {
     std::env::var(variable).map_or(otherwise, |text| text.parse().unwrap_or_else(|_| panic!("{variable} is a number")))
 }
 
-/// Processor time of this process so far in seconds, all its threads together, where the system tells it.
+/// Processor time of this process so far in seconds, all its threads together, where the system reports it.
 fn processor_time() -> f64 {
     let text = std::fs::read_to_string("/proc/self/stat").unwrap_or_default();
     // The 14th and 15th word, in hundredths; the name, second, may have blanks and ends with the last parenthesis.
@@ -108,8 +108,8 @@ fn random_arms_equal_their_equations_and_keep_every_identity_exactly() {
     println!("{arms} arms from seed {first} on: each arm equals its equations and keeps every identity\n{seen}");
 }
 
-/// Arms that were not generated, or not judged right, before the program was mended: constants whose reciprocals grew with every pivot, a
-/// centre of mass on the bisector of two axes, pairs of factors that were shared and taken apart for ever.
+/// Seeds of arms that earlier versions failed to generate, or judged wrong. Constants had reciprocals that grew with every pivot,
+/// a centre of mass lay on the bisector of two axes, or pairs of factors were shared and split for ever.
 #[test]
 fn arms_that_took_a_mend_stay_mended() {
     for seed in [575, 630, 2723, 4951, 5350] {
@@ -127,7 +127,7 @@ fn arms_with_general_angles_alone_equal_their_equations() {
     }
 }
 
-/// Says which arm it was, wherever a panic starts.
+/// Names the arm in any panic.
 struct Named<'a>(u64, &'a str);
 
 impl Drop for Named<'_> {

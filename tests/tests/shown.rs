@@ -46,7 +46,7 @@ task: [rz]
 regressor: standard
 ";
 
-/// The smallest arm whose constants stand alone.
+/// A small arm whose constants appear on their own.
 const SLIDE: &str = "
 name: slide
 convention: standard
@@ -57,7 +57,7 @@ task: [z]
 regressor: standard
 ";
 
-/// The function whose result a matrix is shown of, and where its entries stand there.
+/// The function whose result the shown matrix comes from, and the places of its entries in it.
 fn place(shown: &str, sizes: &Sizes) -> Option<(String, Range<usize>)> {
     for (quantity, with) in catalogue::functions() {
         let (function, mut start) = (quantity.function_name(with), 0);
@@ -117,7 +117,7 @@ fn check(what: &str, text: &str) {
             names.extend(of.iter().cloned());
             let value = |text: &str| formula::evaluate(&formula::parse(text)?, &names);
             let found = quantity.value(&names).unwrap_or_else(|error| panic!("{what}: {error}")).concat();
-            // What is left of minors is held against the Jacobian where it is formed.
+            // The unit tests of the minors compare them with the Jacobian.
             if quantity.name == "determinant" && quantity.columns < quantity.rows {
                 continue;
             }
@@ -148,7 +148,7 @@ fn every_formula_has_the_value_of_the_program() {
 #[test]
 #[ignore = "wide"]
 fn formulas_of_random_arms_have_the_values_of_their_programs() {
-    // Few joints: what is checked here are constants, and a determinant with names takes its time.
+    // Few joints: the check is about constants, and a determinant with names is slow.
     for seed in 0..12 {
         let mut random = random::Random::new(seed);
         let dof = 1 + seed as usize % 3;

@@ -1,4 +1,4 @@
-//! What is known of each robot at a glance, kept as snapshots: a difference shows whether the form, the cost or the meaning has changed.
+//! Snapshots of each robot: a difference shows whether the form, the cost or the meaning has changed.
 //!
 //! - `ROBOT.cost`: operations of every emitted function, and the derivation that was chosen: the *cost*;
 //! - `ROBOT.meaning`: fingerprints of all entries of every quantity, which no rearrangement changes: the *meaning*;
@@ -66,7 +66,7 @@ fn meanings() {
         let model = model(robot);
         let field = &model.field;
         let mut text = format!("in the field of {} elements; the halves of the first value in one, by rows\n", field.prime());
-        // Half the digits tell as much as a reader needs; both halves count, for a small number has an empty one.
+        // Half the digits suffice; both halves enter, because a small number has an empty half.
         let hex = |[first, _]: [Element; 2]| match field.to_u64(first) {
             0 => "0".to_owned(),
             value => format!("{:08x}", (value >> 32) ^ (value & 0xffff_ffff)),
@@ -80,7 +80,7 @@ fn meanings() {
             for part in quantity.result {
                 let (own, rest) = entries.split_at(part.len(&sizes));
                 entries = rest;
-                // A vector stands in a row.
+                // A vector is printed as a row.
                 let columns = if part.lengths.len() == 1 { part.rows() } else { part.columns() };
                 for row in own.chunks(columns.of(&sizes).max(1)) {
                     let row: Vec<String> = row.iter().map(|&entry| hex(derivation.pool.fingerprint(entry))).collect();

@@ -178,7 +178,7 @@ fn the_transcription_obeys_the_laws() {
             assert!(rate(&j[i][k]) == j_dot[i][k], "dJ/dt[{i}][{k}]");
         }
     }
-    // The rotation is one: R R' = 1; and the determinant is that of the task rows.
+    // The rotation satisfies R R' = 1, and the determinant belongs to the task rows.
     for i in 0..3 {
         for k in 0..3 {
             assert!(add((0..3).map(|c| &t[i][c] * &t[k][c])) == Exact::integer(i64::from(i == k)));
@@ -213,7 +213,7 @@ fn the_transcription_obeys_the_laws() {
         assert!(y_pi[i][0] == right, "Y pi [{i}]");
     }
 
-    // The numbers of the report are those of the names, without and with the load.
+    // The formulas with names give the numbers of the report, without and with the load.
     let mut loaded = technical_project::nominal_names();
     loaded.insert("m_l3".to_owned(), Exact::integer(15));
     for (numbers, names) in

@@ -1,6 +1,7 @@
-//! Rounding errors of some robots, the worst against 256 bits, with both bounds, as CSV; exit code 1 if a bound is exceeded:
-//! `cargo run --release -p armgen-verify --example error_bounds -- 1000000 both --out FOLDER robots/*.yaml` writes a file for each robot and scalar.
-//! Without `--out` the tables are printed. Names of functions after the files measure these alone.
+//! Measures rounding errors of robots and compares the worst, recomputed with 256 bits, with both bounds. The output is CSV; the exit
+//! code is 1 if an error exceeds a bound. This command writes a file for each robot and scalar:
+//! `cargo run --release -p armgen-verify --example error_bounds -- 1000000 both --out FOLDER robots/*.yaml`.
+//! Without `--out` it prints the tables. Function names after the files restrict the measurement to these functions.
 
 use std::fmt::Write;
 use std::path::Path;
@@ -16,7 +17,7 @@ use armgen_verify::errors::{Run, Seen, Subject};
 use armgen_verify::float::LANES;
 use armgen_verify::reader::Module;
 
-/// Batches after which the log tells how far it is.
+/// Number of batches between progress messages.
 const PART: u64 = 1_250;
 
 fn main() -> ExitCode {
@@ -64,7 +65,7 @@ struct Table {
 }
 
 impl Table {
-    /// Writes the table into a folder, or prints it; returns whether all bounds hold.
+    /// Writes the table to a folder, or prints it; returns whether all bounds hold.
     fn put(self, folder: Option<&str>) -> Result<bool, String> {
         match folder {
             Some(folder) => {
@@ -76,7 +77,7 @@ impl Table {
     }
 }
 
-/// Measures the errors of a robot; `None` if its description is refused in this scalar.
+/// Measures the errors of a robot; `None` if this scalar cannot represent its description.
 fn table(path: &str, scalar: Scalar, states: u64, functions: &[String]) -> Result<Option<Table>, String> {
     let source = Source::new(path, std::fs::read_to_string(path).map_err(|e| e.to_string())?);
     #[allow(clippy::needless_update)]

@@ -1,4 +1,4 @@
-//! What a wrong function is off by: its value and that of the equations at one state in floats, for people. It proves nothing.
+//! Illustrates the error of a wrong function: its value and the value of the equations in floats at a state. This proves nothing.
 
 use armgen_description::manipulator::{Joint, Manipulator};
 
@@ -16,10 +16,10 @@ use crate::reader::Module;
 use crate::reference::{BaseParameters, Wanted};
 use crate::report::{FunctionReport, Verdict};
 
-/// Floats that are nearer than this part of the larger one are said to agree.
+/// Floats with a smaller relative difference count as equal.
 const AGREE: f64 = 1e-6;
 
-/// Floats as an arithmetic; constants are rounded.
+/// Float arithmetic with rounded constants.
 struct Floats;
 
 impl Arithmetic for Floats {
@@ -35,7 +35,7 @@ impl Arithmetic for Floats {
     }
 }
 
-/// Adds to what is said of functions that differ what they and the equations say at a state of the box.
+/// Adds to the verdict of each differing function its values and those of the equations at a state within the box.
 pub(crate) fn say(functions: &mut [FunctionReport], module: &Module, checker: &Checker, nominal: &[Formula]) {
     if functions.iter().all(|function| !matches!(function.verdict, Verdict::Different { .. })) {
         return;
@@ -79,7 +79,7 @@ fn state(arguments: &Arguments<f64>, manipulator: &Manipulator) -> State<f64> {
     State { stribeck, ..State::of(arguments.clone(), angles, arguments.dq.iter().map(sign).collect(), [0.0, 1.0]) }
 }
 
-/// The arguments of a function, as a reader writes them; parameters are those of the description.
+/// The arguments of a function in readable form; parameters have the values of the description.
 fn place(name: &str, arguments: &Arguments<f64>) -> String {
     let promise = Promise::of(name);
     let of = |argument: &&str| {

@@ -1,25 +1,25 @@
-//! `base_regressor`: a regressor of base parameters, whichever of them its author chose.
+//! `base_regressor`: checks a regressor of base parameters for any choice of these parameters.
 //!
-//! Base parameters are no definite set. Origins slide along joint axes, frames turn about them, how much second moment along its axis a link
-//! keeps is free, and what is 0 in the description has no column. None of these choices is made again here. With Y_k(q, dq, ddq) the torque of
-//! a unit of the standard parameter k, links in their joint frames, what is judged is
+//! Base parameters are not unique. The author may shift origins along joint axes and rotate frames about them, and choose the share of a
+//! link's second moment along its axis. A parameter whose value is 0 in the description has no column. The check does not repeat these
+//! choices. Let Y_k(q, dq, ddq) be the torque of a unit of the standard parameter k, with links in their joint frames. The conditions are
 //!
 //! ```text
-//! (a)  column c of Y_b = Σ x_k Y_k, x constant, over the parameters of the kind that name c is of
+//! (a)  column c of Y_b = Σ x_k Y_k, x constant, over the parameters of the kind of name c
 //! (b)  the columns of Y_b are independent
 //! (c)  Y_b pi_b = B ddq + C dq + F + g
 //! ```
 //!
-//! A kind is what slides and turns make of one parameter, with the second moment along the axis ([`kind`]): that of a rotor or of friction is the
-//! parameter alone, and x = 1.
+//! A kind contains the combinations that arise from one parameter by shifts, rotations and the second moment along the axis ([`kind`]).
+//! A rotor or friction parameter forms a kind of its own, with x = 1.
 //!
-//! For (a), x is found in a prime field from [`FITTED`] states, as many as there are unknowns at most, and the equation is then tested at one
-//! more, drawn independently of x: a combination with coefficients that are not constant passes with odds of degree/p as any other wrong
-//! function does. For (b), the rank of Y_b stacked over states never exceeds the true one: that it is the number of columns proves them
-//! independent. (c) is tested at all these states and at a rational one.
+//! For (a), x comes from [`FITTED`] states in a prime field, at most as many as there are unknowns. The equation is then tested at a further
+//! state, drawn independently of x. A combination with variable coefficients passes with odds of degree/p, like any other wrong function.
+//! For (b), the rank of Y_b stacked over states never exceeds the true rank; if it equals the number of columns, they are independent.
+//! (c) is tested at all these states and at a rational state.
 //!
-//! So each column is the torque of a definite combination of inertial parameters, there is none too many, and with the values given they are the
-//! torque of the description: what was left out adds nothing there. Whether a parameter more should have had a column is not asked.
+//! So each column is the torque of a definite combination of inertial parameters, no column is redundant, and the nominal values give the
+//! torque of the description: omitted parameters contribute nothing there. The check does not ask whether a further parameter needs a column.
 
 use std::collections::BTreeMap;
 
@@ -39,17 +39,17 @@ use crate::number::{Erased, Member, Numbers};
 use crate::program::{Program, Step};
 use crate::reference::{Reference, Values, Wanted, BASE_REGRESSOR};
 
-/// The base parameters of a module: the standard ones after which they are named with whether others are carried along, and their claimed values.
+/// The base parameters of a module: the standard parameters in their names, a flag for combined parameters, and their claimed values.
 #[derive(Clone, Debug, PartialEq)]
 pub struct OwnParameters {
-    /// What the names say.
+    /// The standard parameter of each name, and whether the name denotes a combination.
     pub named: Vec<(Standard, bool)>,
     /// Exact values.
     pub nominal: Vec<Formula>,
 }
 
-/// Standard parameters that those of a name may be combinations of: closed under turning the joint frame about its axis, sliding it along, and
-/// changing the second moment along the axis, (Ixx + Iyy - Izz)/2.
+/// The standard parameters that may be combined under this name. The set is closed under rotation of the joint frame about its axis, shift
+/// along it, and change of the second moment along it, (Ixx + Iyy - Izz)/2.
 pub fn kind(parameter: Standard) -> Vec<Standard> {
     // In the order m, mcx, mcy, mcz, Ixx, Ixy, Iyy, Ixz, Iyz, Izz.
     let of_link: &[usize] = match parameter {
@@ -64,15 +64,15 @@ pub fn kind(parameter: Standard) -> Vec<Standard> {
     of_link.iter().map(|&k| Standard::Link(i, k)).collect()
 }
 
-/// Whether a column must be the very one of its parameter.
+/// Whether a column must equal the column of its parameter.
 fn is_alone(parameter: Standard) -> bool {
     !matches!(parameter, Standard::Link(..))
 }
 
-/// States from which coefficients are found: as many as a kind has parameters, for a link that one joint alone feels.
+/// Number of states that determine the coefficients: the number of parameters of a kind, for a link that loads a single joint.
 pub const FITTED: usize = 4;
 
-/// A state with the torques there and the columns of single parameters.
+/// A state with its torques and the columns of single parameters.
 #[derive(Clone, Debug)]
 struct Sample<E> {
     state: State<E>,
@@ -84,15 +84,15 @@ struct Sample<E> {
 #[derive(Clone, Debug)]
 pub struct Samples<E>(Vec<Sample<E>>);
 
-/// An entry `[joint][column]` that is wrong, with the reason.
+/// A wrong entry `[joint][column]`, with the reason.
 pub type Fault = (String, String);
 
-/// Columns of single parameters at a state, links in their joint frames, and the torques there.
+/// Columns of single parameters at a state, with links in their joint frames, and the torques.
 fn sample<E: Element>(arm: &Arm<E>, state: State<E>, named: &[(Standard, bool)]) -> Sample<E> {
     let motion = || Motion { rates: state.dq.clone(), accelerations: state.ddq.clone(), gravity: arm.gravity.clone() };
     let described = Pose::new(arm, &state);
     let in_joint_frames = described.clone().with_links_in_joint_frames();
-    // Rotors and the load stand where the description says.
+    // Rotors and the load keep their frames of the description.
     let (whole, links) = (ArmMotion::new(arm, &described, motion()), ArmMotion::new(arm, &in_joint_frames, motion()));
     let nothing = || vec![arm.zero.clone(); arm.dof()];
     let unit = |k: usize| -> Vec<E> { (0..10).map(|i| if i == k { arm.one.clone() } else { arm.zero.clone() }).collect() };
@@ -126,7 +126,7 @@ fn sample<E: Element>(arm: &Arm<E>, state: State<E>, named: &[(Standard, bool)])
     Sample { torques, columns, state }
 }
 
-/// For each entry of a base regressor the sum of what it may be a combination of: no smaller, and of no lower degree.
+/// For each entry of a base regressor, the sum over its kind: at least as large, and of at least the same degree.
 pub fn sums_of_kinds<E: Element>(arm: &Arm<E>, state: &State<E>, named: &[(Standard, bool)]) -> Vec<E> {
     let columns = sample(arm, state.clone(), named).columns;
     let entry = |i: usize, parameter: Standard| {
@@ -135,7 +135,7 @@ pub fn sums_of_kinds<E: Element>(arm: &Arm<E>, state: &State<E>, named: &[(Stand
     (0..arm.dof()).flat_map(|i| named.iter().map(move |(parameter, _)| entry(i, *parameter)).collect::<Vec<E>>()).collect()
 }
 
-/// Values of all functions at a state, of `base_regressor` those of [`sums_of_kinds`] where its parameters are given.
+/// Values of all functions at a state; for `base_regressor` those of [`sums_of_kinds`] if its parameters are given.
 pub fn values<K: Arithmetic>(
     arithmetic: &mut K,
     manipulator: &Manipulator,
@@ -172,7 +172,7 @@ where
 }
 
 impl<E> Samples<E> {
-    /// The same samples in other numbers.
+    /// The same samples in another number type.
     pub fn map<F>(self, of: &dyn Fn(E) -> F) -> Samples<F> {
         let all = |values: Vec<E>| values.into_iter().map(of).collect::<Vec<F>>();
         let each = |sample: Sample<E>| Sample {
@@ -185,7 +185,7 @@ impl<E> Samples<E> {
 }
 
 impl<E: Element> Samples<E> {
-    /// The state of a reference and `more` others, each with the columns that these parameters need.
+    /// The state of a reference and `more` further states, each with the columns for these parameters.
     pub fn draw<K: Arithmetic<Element = E>>(
         arithmetic: &mut K,
         manipulator: &Manipulator,
@@ -203,17 +203,17 @@ impl<E: Element> Samples<E> {
         Some(Samples(samples))
     }
 
-    /// The state of a reference with the torques there alone.
+    /// The state of a reference with only its torques.
     pub fn torques(reference: &Reference<E>) -> Option<Samples<E>> {
         let mut torques = reference.values.get("inverse_dynamics")?.clone();
-        // What grows with the load is no combination of columns.
+        // Load-dependent friction is no combination of columns.
         if let Some(load) = reference.values.get("load_friction") {
             torques = torques.iter().zip(load).map(|(torque, load)| torque.minus(load)).collect();
         }
         Some(Samples(vec![Sample { state: reference.state.clone(), torques, columns: BTreeMap::new() }]))
     }
 
-    /// The first entry that (a) or (c) does not hold for.
+    /// The first entry that violates (a) or (c).
     pub fn fault(&self, program: &Program, literals: &[E], named: &[(Standard, bool)], nominal: &[E]) -> Option<Fault> {
         let mut values = Vec::new();
         for sample in &self.0 {
@@ -272,12 +272,12 @@ impl<'a, E: Element> Y<'a, E> {
         0..self.samples[0].torques.len()
     }
 
-    /// Whether the torque of a joint is not Y_b pi_b.
+    /// Whether the torque of a joint differs from Y_b pi_b.
     fn is_wrong(&self, i: usize) -> bool {
         self.missing.iter().any(|of| !of[i].is_zero())
     }
 
-    /// The only column that what is missing is a multiple of, at the first joint that it acts on.
+    /// The only column proportional to the missing torque, with the first joint that it loads.
     fn proportional(&self) -> Option<(usize, usize)> {
         let places = || self.joints().flat_map(|i| (0..self.samples.len()).map(move |s| (s, i)));
         let parallel = |c: usize| -> Option<usize> {
@@ -290,7 +290,7 @@ impl<'a, E: Element> Y<'a, E> {
         found.next().is_none().then_some(first)
     }
 
-    /// Whether a column is a combination at these joints.
+    /// Whether a column is a combination of its kind at these joints.
     fn is_combination(&self, c: usize, kind: &[Standard], alone: bool, joints: &[usize]) -> bool {
         let at = |s: usize, i: usize, k: usize| &self.samples[s].columns[&kind[k]][i];
         let one = self.samples[0].state.one.clone();
@@ -309,7 +309,7 @@ impl<'a, E: Element> Y<'a, E> {
         (0..self.samples.len()).all(|s| joints.iter().all(|&i| holds(s, i)))
     }
 
-    /// A joint at which a column is not what it is at the others, if it is no combination.
+    /// For a column that is no combination, a joint where it disagrees with the other joints.
     fn wrong_row(&self, c: usize, parameter: Standard) -> Option<usize> {
         let (kind, alone) = (kind(parameter), is_alone(parameter));
         let all: Vec<usize> = self.joints().collect();
@@ -317,7 +317,7 @@ impl<'a, E: Element> Y<'a, E> {
         if holds(&all) {
             return None;
         }
-        // Where joints are wrong by themselves, or the others agree without some, it is those: the torques tell which first.
+        // Joints that are wrong by themselves, or without which the others agree, are the wrong joints; the torques select the first.
         let by_itself = all.iter().copied().find(|&i| !holds(&[i]));
         let without_wrong = || {
             let right: Vec<usize> = all.iter().copied().filter(|&i| !self.is_wrong(i)).collect();
@@ -329,7 +329,7 @@ impl<'a, E: Element> Y<'a, E> {
     }
 }
 
-/// A solution of the independent ones among some equations (coefficients, then the right-hand side), with 0 for what they leave free.
+/// A solution of the independent equations (coefficients, then the right-hand side); free unknowns are 0.
 fn one_solution<E: Element>(equations: impl Iterator<Item = Vec<E>>, unknowns: usize, zero: &E) -> Vec<E> {
     let mut echelon = Echelon::default();
     for equation in equations {
@@ -346,7 +346,7 @@ fn one_solution<E: Element>(equations: impl Iterator<Item = Vec<E>>, unknowns: u
     solution
 }
 
-/// Independent rows, each with 1 at its pivot, its first entry that is not 0, and 0 at the pivots of those before.
+/// Independent rows, each with 1 at its pivot, the first nonzero entry, and 0 at the pivots of the rows before.
 struct Echelon<E>(Vec<(usize, Vec<E>)>);
 
 impl<E> Default for Echelon<E> {
@@ -356,7 +356,7 @@ impl<E> Default for Echelon<E> {
 }
 
 impl<E: Element> Echelon<E> {
-    /// Adds a row unless those that are there span it in its first `columns` entries.
+    /// Adds a row unless the existing rows span its first `columns` entries.
     fn add(&mut self, mut row: Vec<E>, columns: usize) {
         for (pivot, known) in &self.0 {
             let factor = row[*pivot].clone();
@@ -372,7 +372,7 @@ impl<E: Element> Echelon<E> {
     }
 }
 
-/// (b): a column that those before it span, if there is one, at states drawn from the field until the rank is full.
+/// (b): the first column in the span of the columns before it, if any. States are drawn from the field until the rank is full.
 pub fn dependent_column<K: Arithmetic>(
     mut arithmetic: K,
     program: &Program,
@@ -381,7 +381,7 @@ pub fn dependent_column<K: Arithmetic>(
     columns: usize,
 ) -> Option<Fault> {
     let mut echelon = Echelon::default();
-    // A row more at least in each state, if there is one to be had.
+    // Each state adds at least a row if the rank can grow.
     for _ in 0..columns + 2 {
         if echelon.0.len() == columns {
             return None;
@@ -396,7 +396,7 @@ pub fn dependent_column<K: Arithmetic>(
 }
 
 impl Samples<Degree> {
-    /// log2 of the odds that a program which (a) or (c) does not hold for passes one point; `odds` of a polynomial by degree and height.
+    /// log2 of the odds that a program violating (a) or (c) passes one point; `odds` are those of a polynomial by degree and height.
     pub fn log2_odds(
         &self,
         program: &Program,
@@ -416,7 +416,7 @@ impl Samples<Degree> {
                 let kind = kind(*parameter);
                 let sum = kind.iter().fold(entry.clone(), |sum, k| sum.plus(&sample.columns[k][i]));
                 let (degree, height) = sum.of_difference(&sum);
-                // The coefficients are quotients of minors of at most so many rows; a prime that divides the next larger one misleads.
+                // The coefficients are quotients of minors with at most `rows - 1` rows; a prime that divides a minor one larger misleads.
                 let rows = kind.len() as f64 + 1.0;
                 worst = worst.max(odds(degree * rows, (height + rows.log2()) * rows));
             }

@@ -1,5 +1,5 @@
-//! The certificate beside a generated module, `robot.cert.json`: what was verified, and the exact values of all literals, so that anybody can
-//! verify again without the generator.
+//! The certificate of a generated module, `robot.cert.json`: the verified facts and the exact values of all literals. With it, anybody
+//! can verify the module again without the generator.
 
 use std::collections::BTreeMap;
 
@@ -23,19 +23,19 @@ pub struct Certificate {
     pub made_by: String,
     /// Name of the robot.
     pub robot: String,
-    /// Options of the generation that can be read from the text.
+    /// Generation options that are readable from the module.
     pub options: BTreeMap<String, String>,
-    /// The box that error bounds are stated over: lowest and highest value of each argument's entries, as decimals that are these floats.
+    /// The box of the error bounds: lowest and highest value of each argument's entries, as decimals that are exactly these floats.
     pub rounding_box: BTreeMap<String, Vec<(String, String)>>,
     /// The description.
     pub input: Text,
     /// The module.
     pub output: Text,
-    /// Whether all that follows is as it should be.
+    /// Whether all checks have passed.
     pub verified: bool,
-    /// What is wrong with the whole.
+    /// Faults of the whole module.
     pub faults: Vec<String>,
-    /// Formulas that the exact values of literals refer to, each only to those before it: number, as in `k0`, and formula.
+    /// Formulas used by exact values of literals, each using only earlier ones: its number, as in `k0`, and the formula.
     #[serde(skip_serializing_if = "Vec::is_empty", default)]
     pub definitions: Vec<(usize, String)>,
     /// Functions.
@@ -46,7 +46,7 @@ pub struct Certificate {
     pub identities: Vec<IdentityEntry>,
 }
 
-/// A text by its hash.
+/// A text, identified by its hash.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Text {
@@ -60,20 +60,20 @@ pub struct Text {
 pub struct FunctionEntry {
     /// Its name.
     pub name: String,
-    /// `equal`, or what is wrong and where.
+    /// `equal`, or the fault and its place.
     pub verdict: String,
-    /// Random points in prime fields.
+    /// Number of random points in prime fields.
     pub points: usize,
-    /// Random rational points.
+    /// Number of random rational points.
     pub exact_points: usize,
-    /// Upper bound of the odds that a wrong function passes: `2^-200`.
+    /// Upper bound on the odds that a wrong function passes: `2^-200`.
     pub odds_of_a_miss: String,
-    /// How far rounding can take any entry from the exact one, anywhere in the box.
+    /// Upper bound on the distance of computed from exact entries over the box, by rounding.
     pub error_bound: String,
-    /// The bound holds where no divisor is smaller than this, if the function divides.
+    /// The bound holds if no divisor is smaller than this; absent if the function has no division.
     #[serde(skip_serializing_if = "Option::is_none", default)]
     pub smallest_divisor: Option<String>,
-    /// Of accelerations: they are those at torques off by at most the first number plus the second times the largest of them.
+    /// For accelerations: they are exact for torques with an error of at most the first number plus the second times the largest acceleration.
     #[serde(skip_serializing_if = "Option::is_none", default)]
     pub torque_error: Option<(String, String)>,
     /// Literals in the order of the text, each with its exact value.
@@ -86,7 +86,7 @@ pub struct FunctionEntry {
 pub struct ConstantEntry {
     /// Its name.
     pub name: String,
-    /// `equal`, or what is wrong and where.
+    /// `equal`, or the fault and its place.
     pub verdict: String,
     /// Its numbers, each with its exact value.
     pub literals: Vec<(String, String)>,
@@ -98,26 +98,26 @@ pub struct ConstantEntry {
 pub struct IdentityEntry {
     /// The identity as a formula.
     pub identity: String,
-    /// `holds`, `does not hold`, or why it was not checked.
+    /// `holds`, `does not hold`, or the reason why it was not checked.
     pub verdict: String,
-    /// Random points in prime fields.
+    /// Number of random points in prime fields.
     pub points: usize,
 }
 
-/// The version that is written.
+/// The format version of written certificates.
 const FORMAT: u32 = 1;
 
-/// The longest text that is read, in bytes; that of a chain of 32 joints has an eighth of it.
+/// The maximum length of a certificate, in bytes; that of a chain of 32 joints takes an eighth.
 pub const LONGEST: usize = 32 << 20;
 
-/// As many differences of a certificate are named.
+/// Maximum number of listed differences.
 const MOST_NAMED: usize = 8;
 
 fn literals(exact: &[Exact]) -> Vec<(String, String)> {
     exact.iter().map(|e| (e.literal.clone(), e.value.to_string())).collect()
 }
 
-/// Names the places at which two values differ, objects of a list by their names.
+/// Lists the places where two values differ; objects in lists are identified by name.
 fn compare(given: &Value, found: &Value, place: String, into: &mut Vec<String>) {
     match (given, found) {
         (Value::Object(a), Value::Object(b)) if a.keys().eq(b.keys()) => {
@@ -220,7 +220,7 @@ impl Certificate {
         text
     }
 
-    /// Reads a certificate. Its text must be the one that [`to_json`](Certificate::to_json) gives: so no key stands twice and nothing beside.
+    /// Reads a certificate. The text must equal the output of [`to_json`](Certificate::to_json), which excludes duplicate and extra keys.
     pub fn from_json(text: &str) -> Result<Certificate, String> {
         if text.len() > LONGEST && Check::Length.is_made() {
             return Err(format!("the certificate is longer than {} MiB", LONGEST >> 20));
@@ -241,8 +241,8 @@ impl Certificate {
         }
     }
 
-    /// The exact values that it claims for the literals of a module, or what is wrong with it as far as that is known before anything is computed:
-    /// other texts, other functions, other literals, values that are not theirs.
+    /// The claimed exact values of a module's literals. An error lists faults that need no computation: other texts, functions or
+    /// literals, or values that do not round to their literals.
     pub fn claims_for(&self, module: &Module, input: &str, output: &str) -> Result<Claims, Vec<String>> {
         let mut faults = Vec::new();
         if self.input.sha256 != input && Check::Input.is_made() {
@@ -270,7 +270,7 @@ impl Certificate {
         }
     }
 
-    /// What this certificate says otherwise than `found`, the one that was written on the same texts just now; each with its place.
+    /// The differences from `found`, a new certificate for the same texts, each with its place.
     pub fn differences(&self, found: &Certificate) -> Vec<String> {
         let value = |certificate: &Certificate| serde_json::to_value(certificate).unwrap_or_default();
         let mut all = Vec::new();
@@ -286,7 +286,7 @@ impl Certificate {
         all
     }
 
-    /// The exact values that it claims for literals.
+    /// The claimed exact values of literals.
     pub fn claims(&self) -> Result<Claims, String> {
         let of = |name: &str, literals: &[(String, String)]| {
             (name.to_string(), literals.iter().map(|(_, value)| value.clone()).collect::<Vec<String>>())

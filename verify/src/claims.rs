@@ -1,8 +1,8 @@
-//! The exact values behind the literals of a text.
+//! The exact values of a text's literals.
 //!
-//! A literal is a float; what it stands for is an exact constant that only the generator knows. The generator hands its constants over,
-//! or a certificate lists them, and neither needs to be trusted: a claimed value must have the literal as its nearest float, and the
-//! function, run with the claimed values, must equal the equations exactly. A literal that no claim fits stands for the decimal number it is.
+//! A literal is a float that represents an exact constant known only to the generator. The generator passes its constants, or a certificate
+//! lists them; neither needs trust. The literal must be the float nearest to the claimed value, and the function, run with the claimed values,
+//! must equal the equations exactly. A literal without a matching claim has its decimal value.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -16,25 +16,25 @@ use crate::formula::{Formula, Rational};
 use crate::program::{Literal, Program, Step};
 use crate::reader::Module;
 
-/// Claimed constants by function (or constant) name, in the order of the text where that is known.
+/// Claimed constants by function (or constant) name, in the order of the text if known.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Claims {
     by_name: BTreeMap<String, Vec<Formula>>,
 }
 
 impl Claims {
-    /// None: every literal stands for its decimal number.
+    /// No claims: every literal has its decimal value.
     pub fn none() -> Claims {
         Claims::default()
     }
 
-    /// What a generator hands over. A constant that is longer than a formula may be is left out: its literal stands for the decimal number
-    /// that it is, and the function does not equal the equations.
+    /// The constants of a generator. It omits a constant that exceeds the maximum length of a formula; the literal then has its decimal value,
+    /// and the function does not equal the equations.
     pub fn from_numbers(constants: &BTreeMap<String, Vec<Number>>) -> Claims {
         Claims::read(constants).0
     }
 
-    /// With the definitions that they refer to.
+    /// The same with the definitions that the formulas use.
     fn read(constants: &BTreeMap<String, Vec<Number>>) -> (Claims, Definitions) {
         let mut texts = exact::Definitions::default();
         let lists: Vec<(&String, Vec<String>)> = constants
@@ -43,7 +43,7 @@ impl Claims {
             .collect();
         let mut definitions = Definitions::default();
         for (index, text) in texts.texts().iter().enumerate() {
-            // Without one of them, those that refer to it are left out too.
+            // Without a definition, its users are omitted, too.
             let _ = definitions.define(index, text);
         }
         let read = |text: &String| definitions.formula(text).ok();
@@ -51,12 +51,12 @@ impl Claims {
         (Claims { by_name: lists.into_iter().map(of).collect() }, definitions)
     }
 
-    /// Formulas without names, by function.
+    /// Formulas without definitions, by function.
     pub fn from_texts<'a>(constants: impl IntoIterator<Item = (&'a str, &'a [String])>) -> Result<Claims, String> {
         Claims::with_definitions(constants, &Definitions::default())
     }
 
-    /// What a certificate lists.
+    /// The claims of a certificate.
     pub fn with_definitions<'a>(
         constants: impl IntoIterator<Item = (&'a str, &'a [String])>,
         definitions: &Definitions,
@@ -69,8 +69,8 @@ impl Claims {
         Ok(Claims { by_name })
     }
 
-    /// Those that literals of the module stand for, with what else is claimed for the same literals, and those for the entries of `constants`.
-    /// What is claimed besides has no influence.
+    /// The claims for literals of the module, including alternative claims for the same literals, and those for the entries of `constants`.
+    /// Other claims have no influence.
     pub fn used(&self, module: &Module, constants: &[&str]) -> Claims {
         let mut by_name = BTreeMap::new();
         for (name, program) in module.programs().filter(|(name, _)| self.by_name.contains_key(*name)) {
@@ -83,8 +83,8 @@ impl Claims {
         Claims { by_name }
     }
 
-    /// What a certificate claims in vain: a constant that does not round to the literal it stands for, or that lies so near to the boundary between
-    /// two floats that no constant of a robot does.
+    /// A useless claim of a certificate: a constant that does not round to its literal, or that is closer to a boundary between floats than any
+    /// constant of a robot.
     pub fn misfit(&self, module: &Module) -> Option<String> {
         module.programs().find_map(|(name, program)| {
             let mut pairs = self.of(name).iter().zip(&program.literals);
@@ -108,10 +108,10 @@ impl Claims {
         self.by_name.get(name).map_or(&[], Vec::as_slice)
     }
 
-    /// Claimed values for the literals of a function, each with the literal as its nearest float.
+    /// The claimed values of a function's literals; each literal is the float nearest to its value.
     pub fn resolve(&self, name: &str, literals: &[Literal], real: Float) -> Resolved {
         let claims = self.of(name);
-        // In order, where the certificate lists one for each.
+        // By position, if the certificate lists a value for each literal.
         let in_order = claims.len() == literals.len()
             && claims.iter().zip(literals).all(|(claim, literal)| real.is_nearest(literal.value, claim));
         if in_order {
@@ -138,14 +138,14 @@ impl Claims {
                         others.insert(index, rest.iter().map(|&f| f.clone()).collect());
                     }
                 }
-                // The reader has refused what is no decimal number.
+                // The reader has already refused anything but decimal numbers.
                 None => values.push(decimal(&literal.text).unwrap_or(Formula::Rational(Rational::ZERO))),
             }
         }
         Resolved { values, others }
     }
 
-    /// Whether some literal of a module is none of the constants claimed for its function.
+    /// Whether some literal of a module matches no constant claimed for its function.
     pub fn lack(&self, module: &Module) -> bool {
         module.programs().any(|(name, program)| {
             let known: BTreeSet<u64> =
@@ -154,7 +154,7 @@ impl Claims {
         })
     }
 
-    /// A literal of an entry that is none of the constants claimed for the function, in words: what makes it differ, perhaps.
+    /// A description of a literal of an entry that matches no claimed constant; it may explain the difference.
     pub fn suspect(&self, program: &Program, entry: &str, real: Float) -> Option<String> {
         let claims: Vec<(f64, &Formula)> =
             self.of(&program.name).iter().filter_map(|claim| Some((real.nearest(claim)?.abs(), claim))).collect();
@@ -182,20 +182,20 @@ impl Claims {
 /// The exact values of a function's literals.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Resolved {
-    /// One for each literal.
+    /// A value for each literal.
     pub values: Vec<Formula>,
-    /// Literals for which several claimed constants round to the same float: the other ones.
+    /// For a literal whose float is the nearest to several claimed constants: the other constants.
     pub others: BTreeMap<usize, Vec<Formula>>,
 }
 
-/// Bits that tell the float nearest to a constant of a robot; a few more than twice those of a float do.
+/// Maximum number of bits to find the float nearest to a constant of a robot; slightly more than twice a float's bits suffice.
 const MOST_BITS: usize = 1024;
 
-/// As many choices among constants with the same float are tried.
+/// Maximum number of tried choices among constants with the same float.
 const MOST_CHOICES: usize = 256;
 
 impl Resolved {
-    /// All choices of values, the first one first, as far as they are not too many.
+    /// All choices of values up to the maximum, the first choice first.
     pub fn choices(&self) -> Vec<Vec<Formula>> {
         let mut choices = vec![self.values.clone()];
         for (&index, others) in &self.others {
@@ -221,7 +221,7 @@ mod tests {
     use armgen_codegen::schedule::Options;
     use armgen_description::source::Source;
 
-    /// A limit that a robot comes near is none.
+    /// No robot may come near the limit.
     #[test]
     fn constants_of_robots_cost_little() {
         for name in ["robots/panda7", "tests/robots/everything", "tests/robots/general_angles", "tests/robots/base_set"] {

@@ -1,4 +1,4 @@
-//! Constants of a module against the description.
+//! Compares the constants of a module with the description.
 
 use armgen_description::kinds::JointKind;
 use armgen_description::manipulator::Manipulator;
@@ -17,7 +17,7 @@ use crate::program::Literal;
 use crate::reader::{Constant, Module};
 use crate::report::{ConstantReport, Exact, Verdict};
 
-/// A constant as it should be.
+/// The expected value of a constant.
 enum Expected {
     Text(String),
     Integer(u64),
@@ -27,7 +27,7 @@ enum Expected {
     Array(Vec<Expected>),
 }
 
-/// The first entry that is not as expected.
+/// The first entry that differs from the expected one.
 fn compare(found: &Constant, expected: &Expected, real: Float, entry: &str) -> Option<(String, String)> {
     let differs = |text: String| Some((entry.to_string(), text));
     match (found, expected) {
@@ -39,7 +39,7 @@ fn compare(found: &Constant, expected: &Expected, real: Float, entry: &str) -> O
         (Constant::Infinite(a), Expected::Infinite(b)) if a == b => None,
         (Constant::Number(negative, literal), Expected::Number(exact)) => {
             let value = if *negative { -literal.value } else { literal.value };
-            // 0 and -0 are one number here.
+            // Here 0 and -0 are equal.
             if real.is_nearest(value + 0.0, exact) {
                 None
             } else {
@@ -70,7 +70,7 @@ fn numbers(constant: &Constant, expected: &Expected, into: &mut Vec<Exact>) {
     }
 }
 
-/// Names that a constant of the module lists; `None` if there is no such constant.
+/// The names in a constant of the module; `None` if the constant is missing.
 pub fn names(module: &Module, constant: &str) -> Option<Vec<String>> {
     let Constant::Array(names) = module.constants.get(constant)? else { return Some(Vec::new()) };
     let text = |name: &Constant| match name {
@@ -80,25 +80,25 @@ pub fn names(module: &Module, constant: &str) -> Option<Vec<String>> {
     Some(names.iter().map(text).collect())
 }
 
-/// Names of the base parameters of a module that has a function of them.
+/// Names of the base parameters, if the module has a `base_regressor`.
 fn base_names(module: &Module) -> Option<Vec<String>> {
     let present = module.functions.iter().any(|(name, _)| name == "base_regressor");
     names(module, "BASE_PARAMETER_NAMES").filter(|_| present)
 }
 
-/// Names of the parameters as the module lists them.
+/// The module's names of parameters.
 pub fn parameter_names(module: &Module) -> Vec<String> {
     names(module, "PARAMETER_NAMES").unwrap_or_default()
 }
 
-/// The constants whose exact values are claimed: those of parameters that follow from bodies. Of several bodies lumped at general angles no
-/// formula that is written out has a bearable length; what is claimed is defined step by step.
+/// The constants with claimed exact values: parameters derived from bodies. For several bodies combined at general angles, an expanded
+/// formula would be too long; the claim defines it in steps.
 pub fn claimed_constants(vector: &Vector, module: &Module) -> Vec<&'static str> {
     let run_time = (!matches!(vector, Vector::Names(_))).then_some("NOMINAL_PARAMETERS");
     run_time.into_iter().chain(base_names(module).map(|_| "NOMINAL_BASE_PARAMETERS")).collect()
 }
 
-/// The exact values of so many parameters as claimed; the decimals that stand there where nothing is claimed.
+/// The claimed exact values of this many parameters; without claims the decimal values in the text.
 fn claimed(constant: &str, length: usize, claims: &Claims, module: &Module) -> Option<Vec<Formula>> {
     let claimed = claims.of(constant);
     if claimed.len() == length {
@@ -115,7 +115,7 @@ fn claimed(constant: &str, length: usize, claims: &Claims, module: &Module) -> O
     entries.iter().map(literal).collect()
 }
 
-/// The base parameters of a module with a `base_regressor`: as it names them, with the values that are claimed.
+/// The base parameters of a module with a `base_regressor`: its names, with the claimed values.
 pub fn base_parameters(manipulator: &Manipulator, claims: &Claims, module: &Module) -> Option<OwnParameters> {
     let names = base_names(module)?;
     let named = parameters::base_parameters(manipulator, &names).ok()?;
@@ -123,7 +123,7 @@ pub fn base_parameters(manipulator: &Manipulator, claims: &Claims, module: &Modu
     (named.len() == nominal.len()).then_some(OwnParameters { named, nominal })
 }
 
-/// The first name that is none of a base parameter, or that stands there twice.
+/// The first name that is no base parameter, or occurs twice.
 fn wrong_name(manipulator: &Manipulator, names: &[String]) -> Option<(usize, String)> {
     names.iter().enumerate().find_map(|(k, name)| {
         let one = std::slice::from_ref(name);
@@ -132,7 +132,7 @@ fn wrong_name(manipulator: &Manipulator, names: &[String]) -> Option<(usize, Str
     })
 }
 
-/// The first base parameter that is 0, and so has no column, or that is not the standard parameter whose name it has without an R.
+/// The first base parameter that is 0, and so has no column, or that has a name without R but differs from that standard parameter.
 fn wrong_value(checker: &Checker, own: &OwnParameters) -> Option<(usize, String)> {
     checker.points().iter().find_map(|point| {
         let values = point.literals(&own.nominal)?;
@@ -152,8 +152,8 @@ fn wrong_value(checker: &Checker, own: &OwnParameters) -> Option<(usize, String)
     })
 }
 
-/// The exact nominal parameters: those with names from the description, others as claimed (they are compared with the description's at the points of
-/// the checker).
+/// The exact nominal parameters. Named quantities have the values of the description; other values are claimed, and the checker compares
+/// them with the description at its points.
 pub fn nominal_parameters(manipulator: &Manipulator, vector: &Vector, claims: &Claims, module: &Module) -> Option<Vec<Formula>> {
     let claimed = |parameters: usize| claimed("NOMINAL_PARAMETERS", parameters, claims, module);
     match vector {
@@ -203,7 +203,7 @@ fn expected(checker: &Checker, module: &Module, nominal: &[Formula], names: &[St
     all
 }
 
-/// All constants of a module.
+/// Checks all constants of a module.
 pub fn check(checker: &Checker, module: &Module, nominal: &[Formula]) -> Vec<ConstantReport> {
     let names = parameter_names(module);
     let expected = expected(checker, module, nominal, &names);
@@ -243,7 +243,7 @@ pub fn check(checker: &Checker, module: &Module, nominal: &[Formula]) -> Vec<Con
     reports
 }
 
-/// The first standard or base parameter whose claimed exact value is not what follows from the bodies of the description.
+/// The first standard or base parameter whose claimed value disagrees with the bodies of the description.
 fn wrong_parameter(checker: &Checker, nominal: &[Formula]) -> Option<usize> {
     checker.points().iter().find_map(|point| {
         let right = point.reference.nominal.as_ref()?;

@@ -1,8 +1,8 @@
-//! What an emitted module promises of a function: its arguments and its result. Which functions there are says [`reference`](crate::reference).
+//! The promised arguments and result of an emitted function. [`reference`](crate::reference) lists the functions.
 
 use crate::program::Argument;
 
-/// A dimension of a result.
+/// Length of a dimension of a result.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Length {
     /// The n joints.
@@ -13,7 +13,7 @@ pub enum Length {
     BaseParameters,
     /// The m rows of the task.
     Task,
-    /// That number.
+    /// This number.
     Of(usize),
 }
 
@@ -52,17 +52,17 @@ impl Length {
     }
 }
 
-/// Dimensions of an array, outermost first; none of a number.
+/// Dimensions of an array, outermost first; empty for a number.
 pub type Array = &'static [Length];
 
-/// What a function returns.
+/// The result of a function.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Returned {
     /// An array or a number.
     One(Array),
-    /// Several, one after the other.
+    /// Several results in a tuple.
     List(&'static [Array]),
-    /// Several in fields of a type of that name.
+    /// Several results in fields of a type with this name.
     Fields(&'static str, &'static [(&'static str, Array)]),
 }
 
@@ -77,17 +77,17 @@ pub struct Promise {
     pub returned: Returned,
     /// Whether every module has it.
     pub required: bool,
-    /// Whether there is a form `_with` parameters at run time.
+    /// Whether a form `_with` run-time parameters exists.
     pub parameters: bool,
 }
 
-/// An array in Rust whose entries are these, or its type.
+/// The Rust array with these entries, or its type.
 fn of_entries(lengths: Array, entry: &str) -> String {
     lengths.iter().rev().fold(entry.to_string(), |of, length| format!("[{of};{}]", length.rust()))
 }
 
 impl Returned {
-    /// The type in Rust, without blanks.
+    /// The Rust type, without blanks.
     pub fn rust(self) -> String {
         let array = |lengths: Array| of_entries(lengths, "Real");
         match self {
@@ -97,7 +97,7 @@ impl Returned {
         }
     }
 
-    /// Each array and what Rust writes after the result to have it.
+    /// Each array with the Rust expression that selects it from the result.
     fn arrays(self) -> Vec<(String, Array)> {
         match self {
             Returned::One(lengths) => vec![(String::new(), lengths)],
@@ -106,7 +106,7 @@ impl Returned {
         }
     }
 
-    /// Each array and the name that it has in languages whose results have names.
+    /// Each array with its name in languages with named results.
     pub fn named(self) -> Vec<(String, Array)> {
         match self {
             Returned::One(lengths) => vec![("result".into(), lengths)],
@@ -117,12 +117,12 @@ impl Returned {
         }
     }
 
-    /// What the places of each array's entries begin with.
+    /// The prefixes of the places of each array's entries.
     pub fn accesses(self) -> Vec<String> {
         self.arrays().into_iter().map(|(access, _)| access).collect()
     }
 
-    /// The name of the array that an entry belongs to, and its indices there.
+    /// The array of an entry, by name, and the indices in it.
     pub fn part_of(self, place: &str) -> (String, &str) {
         let (access, indices) = place.split_at(place.find('[').unwrap_or(place.len()));
         let part = self.arrays().iter().position(|(own, _)| own == access).unwrap_or(0);
@@ -139,7 +139,7 @@ impl Returned {
         self.arrays().iter().flat_map(|(place, lengths)| within(place, lengths, sizes)).collect()
     }
 
-    /// The value in Rust whose entries are these.
+    /// The Rust value with these entries.
     pub fn value(self, entries: &[String], sizes: &Sizes) -> String {
         fn array(lengths: &[Length], entries: &mut std::slice::Iter<'_, String>, sizes: &Sizes) -> String {
             let Some((outer, inner)) = lengths.split_first() else { return entries.next().cloned().unwrap_or_default() };
@@ -150,7 +150,7 @@ impl Returned {
         self.value_of(self.arrays().iter().map(|(_, lengths)| array(lengths, &mut entries, sizes)).collect())
     }
 
-    /// The value in Rust whose arrays are these.
+    /// The Rust value with these arrays.
     fn value_of(self, arrays: Vec<String>) -> String {
         match self {
             Returned::One(_) => arrays.concat(),
@@ -165,31 +165,31 @@ impl Returned {
 }
 
 impl Promise {
-    /// The signature in Rust, without blanks.
+    /// The Rust signature, without blanks.
     pub fn signature(&self, with_parameters: bool) -> String {
         format!("({})->{}", self.typed(with_parameters).join(","), self.returned.rust())
     }
 
-    /// The arguments with their types in Rust, without blanks.
+    /// The arguments with their Rust types, without blanks.
     pub(crate) fn typed(&self, with_parameters: bool) -> Vec<String> {
         let own = self.arguments.iter().map(|name| format!("{name}:&[Real;DOF]"));
         with_parameters.then(|| "pi:&[Real;PARAMETERS]".into()).into_iter().chain(own).collect()
     }
 
-    /// The results, by their names and with their types in Rust, without blanks, as a function of its own takes them that writes them where the
-    /// caller says; a number is returned.
+    /// Names and Rust types, without blanks, of the output arguments of the function that writes the result into memory of the caller; a number
+    /// is returned instead.
     pub(crate) fn written(&self) -> Option<Vec<(String, String)>> {
         let named = self.returned.named();
         let is_array = named.iter().all(|(_, lengths)| !lengths.is_empty());
         is_array.then(|| named.into_iter().map(|(name, lengths)| (name, of_entries(lengths, "Real"))).collect())
     }
 
-    /// Whether the function that writes its result is public: that of a matrix with a column for each parameter.
+    /// Whether the function that writes its result is public: for a matrix with a column per parameter.
     pub(crate) fn has_form_into(&self) -> bool {
         matches!(self.returned, Returned::One([_, Length::Parameters | Length::BaseParameters]))
     }
 
-    /// What stands in Rust in a function whose result that other function writes, but for `result` at the end.
+    /// The Rust body of a function that calls the writing function, without the final `result`.
     pub(crate) fn calls_written(&self, with_parameters: bool, written: &str) -> String {
         let zeros = self.returned.arrays().into_iter().map(|(_, lengths)| of_entries(lengths, "0.0"));
         let value = self.returned.value_of(zeros.collect());

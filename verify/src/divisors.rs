@@ -1,4 +1,4 @@
-//! What a function may divide by.
+//! The permitted divisors of a function.
 //!
 //! ```text
 //! forward dynamics and its derivatives   pivots of B(q)
@@ -7,35 +7,34 @@
 //! all others                             nothing
 //! ```
 //!
-//! A pivot is the quotient of two leading minors, joints or rows in their order or from the last to the first. B is the matrix of a
-//! quadratic form, the kinetic energy: of an arm that no motion leaves at rest all minors are positive, for every q. Those of J B^-1 J'
-//! are, but at singular configurations, where the function has no value. So every other divisor is one that the equations do not ask for,
-//! and that may be 0 where they have a value.
+//! A pivot is the quotient of two leading minors, in ascending or descending order of joints or rows. B is the matrix of the kinetic energy.
+//! If every motion has positive energy, all its minors are positive for every q. The minors of J B^-1 J' are positive except at singular
+//! configurations, where the function has no value. Any other divisor is not required by the equations, and may be 0 where they have a value.
 //!
-//! A divisor is a pivot or its negative, without a factor of its own: then it keeps its sign, and is no smaller than what is to be
-//! inverted. Tested at two states in each prime field, with two vectors of parameters.
+//! A divisor must be a pivot or its negative without a further factor. It then keeps its sign, and is no smaller than the quantity to invert.
+//! The check uses two states in each prime field, with two parameter vectors.
 
 use std::collections::BTreeSet;
 
 use crate::element::Element;
 use crate::program::{Program, Step};
 
-/// Matrices whose pivots are divisors.
+/// Matrices whose pivots are permitted divisors.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Matrix {
     /// B(q).
     Inertia,
-    /// B(q) at run-time parameters.
+    /// B(q) with run-time parameters.
     InertiaWith,
-    /// J B^-1 J' of the rows of the task.
+    /// J B^-1 J' for the rows of the task.
     Mobility,
-    /// The mass of the arm, a matrix of one entry.
+    /// The mass of the arm, a 1×1 matrix.
     Mass,
-    /// The same at run-time parameters.
+    /// The mass with run-time parameters.
     MassWith,
 }
 
-/// Whose pivots a function may divide by.
+/// The matrices whose pivots a function may divide by.
 pub fn needed(function: &str) -> &'static [Matrix] {
     match function {
         "forward_dynamics" | "forward_dynamics_derivatives" => &[Matrix::Inertia],
@@ -52,7 +51,7 @@ pub fn needed(function: &str) -> &'static [Matrix] {
 pub struct Pivots<E>(Vec<(Matrix, Vec<E>)>);
 
 impl<E: Element> Pivots<E> {
-    /// The pivots of matrices given row by row.
+    /// The pivots of matrices, given row by row.
     pub fn of(matrices: Vec<(Matrix, Vec<Vec<E>>)>) -> Pivots<E> {
         let both = |rows: &[Vec<E>]| {
             let turned: Vec<Vec<E>> = rows.iter().rev().map(|row| row.iter().rev().cloned().collect()).collect();
@@ -67,7 +66,7 @@ impl<E: Element> Pivots<E> {
     }
 }
 
-/// The pivots of a matrix, up to the first that is 0.
+/// The pivots of a matrix, up to the first 0.
 fn eliminated<E: Element>(rows: &[Vec<E>]) -> Vec<E> {
     let mut rows = rows.to_vec();
     let mut pivots = Vec::new();
@@ -86,7 +85,7 @@ fn eliminated<E: Element>(rows: &[Vec<E>]) -> Vec<E> {
     pivots
 }
 
-/// The steps that a function divides by.
+/// The divisors of a function, as steps.
 pub fn divisors(program: &Program) -> Vec<usize> {
     let divisor = |step: &Step| match step {
         Step::Divide(_, divisor) => Some(*divisor),
@@ -98,15 +97,15 @@ pub fn divisors(program: &Program) -> Vec<usize> {
     divisors
 }
 
-/// Whether a divisor with these values at two states is a pivot there, or the negative of one at both.
+/// Whether a divisor with these values at two states equals a pivot at both states, or the negative of one at both.
 pub fn is_needed<E: Element>(function: &str, values: [&E; 2], pivots: [&Pivots<E>; 2]) -> bool {
     let [here, there] = pivots.map(|pivots| pivots.of_function(function));
     let negatives = values.map(E::negated);
     here.zip(there).any(|(p, q)| values == [p, q] || negatives.each_ref() == [p, q])
 }
 
-/// Of a function that divides: the steps that no quotient takes part in and that are divisors, or operands of those that a quotient takes
-/// part in, or entries.
+/// For a function with divisions: the steps independent of any quotient that are divisors, entries, or operands of steps that depend on a
+/// quotient.
 pub fn undivided_operands(program: &Program) -> Vec<usize> {
     let mut divided: Vec<bool> = Vec::with_capacity(program.steps.len());
     let mut operands = BTreeSet::new();

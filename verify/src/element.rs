@@ -1,4 +1,4 @@
-//! Numbers that a program can be executed in.
+//! Number types that can execute a program.
 
 use std::fmt::Debug;
 
@@ -10,24 +10,24 @@ pub trait Element: Clone + PartialEq + Debug + Send + Sync {
     fn minus(&self, other: &Self) -> Self;
     /// a b.
     fn times(&self, other: &Self) -> Self;
-    /// a b + c, in floats with one rounding.
+    /// a b + c; floats round once.
     fn times_plus(&self, factor: &Self, other: &Self) -> Self {
         self.times(factor).plus(other)
     }
     /// -a.
     fn negated(&self) -> Self;
-    /// 1/a, if there is one.
+    /// 1/a, if it exists.
     fn inverse(&self) -> Option<Self>;
     /// Whether this is 0.
     fn is_zero(&self) -> bool;
-    /// Its sign: 0 of 0, and opposite for opposite numbers. Where numbers have no order it is a random one that follows from the number alone: an
-    /// equality there holds for any odd function, and so for the sign.
+    /// The sign: 0 for 0, and opposite for opposite numbers. In a field without an order it is a pseudo-random value determined by the number. So
+    /// an equality holds there only if it holds for any odd function, including the sign.
     fn sign(&self) -> Self;
-    /// How many bits it is written with, where that can grow.
+    /// Number of bits of its representation, for types without fixed size.
     fn bits(&self) -> usize {
         0
     }
-    /// The quotient, if there is one.
+    /// The quotient, if it exists.
     fn over(&self, other: &Self) -> Option<Self> {
         Some(self.times(&other.inverse()?))
     }
@@ -105,7 +105,7 @@ impl Element for f32 {
     }
 }
 
-/// A number that looks random and follows from another (Steele, Lea and Flood 2014, SplitMix64).
+/// A pseudo-random number determined by another (Steele, Lea and Flood 2014, SplitMix64).
 pub(crate) fn scrambled(value: u64) -> u64 {
     let z = value.wrapping_add(0x9e37_79b9_7f4a_7c15);
     let z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);

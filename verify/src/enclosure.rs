@@ -1,10 +1,10 @@
-//! Whether a float is the one nearest to an exact constant.
+//! Decides whether a float is nearest to an exact constant.
 //!
-//! The constant is enclosed between two multiples of 2^-bits, ever more tightly, until the enclosure lies on one side of the boundary between
-//! the float and its neighbours: the midpoints. A constant that is a fraction is compared with them directly, ties to even.
+//! The constant is enclosed between two multiples of 2^-bits with increasing precision, until the enclosure contains none of the midpoints
+//! between the float and its neighbours. A fraction is compared with the midpoints directly, with ties to even.
 //!
-//! Square roots by integer roots, pi = 4 atan(1/2) + 4 atan(1/3), sine and cosine by their series, the arc tangent by its series after halving
-//! the angle.
+//! Square roots come from integer roots, pi = 4 atan(1/2) + 4 atan(1/3), sine and cosine from their series, and the arc tangent from its series
+//! after repeated halving of the angle.
 
 use std::cmp::Ordering;
 
@@ -14,13 +14,13 @@ use dashu_int::{IBig, UBig};
 use crate::formula::{Formula, Rational, Root};
 use crate::interval::{ceil_shift, floor_div, floor_shift, invert, multiply, Interval};
 
-/// Numbers of bits tried in turn.
+/// Precisions, tried in this order, bits.
 const PRECISIONS: [usize; 5] = [128, 256, 1024, 4096, 12_288];
 
-/// More bits are worked with than are asked for: deep graphs of definitions lose many.
+/// Additional working bits: deep graphs of definitions lose many.
 const GUARDS: [usize; 3] = [64, 512, 4096];
 
-/// Two fractions around a constant, less than 2^-bits apart; `None` if it is no number (a root of a negative, a division by 0) or out of reach.
+/// Two fractions around a constant, less than 2^-bits apart; `None` if it is undefined (root of a negative, division by 0) or out of reach.
 pub fn enclose(formula: &Formula, bits: usize) -> Option<(Rational, Rational)> {
     GUARDS.into_iter().find_map(|guard| {
         let working = bits + guard;
@@ -33,7 +33,7 @@ pub fn enclose(formula: &Formula, bits: usize) -> Option<(Rational, Rational)> {
     })
 }
 
-/// Sine and cosine of a fraction, as integers over 2^bits with the number of bits, off by less than two units of 2^-`fine`.
+/// Sine and cosine of a fraction, as integers over 2^bits, and the number of bits; the error is below two units of 2^-`fine`.
 pub fn sine_cosine_of(angle: &Rational, fine: usize) -> Option<(IBig, IBig, usize)> {
     let bits = fine + 8;
     let scaled = (angle * Rational::from(UBig::ONE << bits)).floor();
@@ -99,7 +99,7 @@ fn interval(formula: &Formula, bits: usize) -> Option<Interval> {
     })
 }
 
-/// atan(1/n) = Σ (-1)^k / ((2k+1) n^(2k+1)); each truncation is below one unit, the rest of the series below the first term left out.
+/// atan(1/n) = Σ (-1)^k / ((2k+1) n^(2k+1)). Each truncation error is below one unit, the remainder below the first omitted term.
 fn arctangent(n: u32, bits: usize) -> Interval {
     let mut power = (IBig::ONE << bits) / IBig::from(n);
     let (mut sum, mut k) = (IBig::ZERO, 0u32);
@@ -109,13 +109,13 @@ fn arctangent(n: u32, bits: usize) -> Interval {
         power /= IBig::from(n * n);
         k += 1;
     }
-    // A term inherits less than two units from its power and loses less than one itself.
+    // A term inherits an error below two units from its power and adds less than one.
     let slack = IBig::from(3 * k + 3);
     Interval { low: &sum - &slack, high: sum + slack }
 }
 
-/// atan(t) = 8 atan(t_3) for t in [0, 1), with t_(k+1) = t_k/(1 + sqrt(1 + t_k²)) the tangent of half the angle, and t_3 < 1/10 by the series
-/// Σ (-1)^k t^(2k+1)/(2k+1) at its lower end, widened by its width (the slope is at most 1).
+/// atan(t) = 8 atan(t_3) for t in [0, 1), where t_(k+1) = t_k/(1 + sqrt(1 + t_k²)) is the tangent of half the angle. The series
+/// Σ (-1)^k t^(2k+1)/(2k+1) gives atan(t_3), t_3 < 1/10, at the lower end, widened by the width of t_3 (the slope is at most 1).
 fn arctangent_of(tangent: Interval, bits: usize) -> Option<Interval> {
     let one = IBig::ONE << bits;
     let mut t = tangent;
@@ -134,19 +134,19 @@ fn arctangent_of(tangent: Interval, bits: usize) -> Option<Interval> {
         power = (power * &square) >> bits;
         k += 1;
     }
-    // A term inherits less than two units from its power and loses less than one itself.
+    // A term inherits an error below two units from its power and adds less than one.
     let slack = IBig::from(3 * k + 3) + (&t.high - &t.low);
     let eight = IBig::from(8);
     Some(Interval { low: (&sum - &slack) * &eight, high: (sum + slack) * eight })
 }
 
-/// Angles are taken less whole turns from here on.
+/// Larger angles are reduced by whole turns first.
 const LARGE_ANGLE: u32 = 256;
 
-/// Angles of more bits before the point have no sine here.
+/// Maximum number of integer bits of an angle with a sine.
 const LONGEST_ANGLE: usize = 4096;
 
-/// An angle less as many whole turns as fit below its lower end.
+/// An angle minus the largest number of whole turns below its lower end.
 fn less_turns(angle: &Interval, bits: usize) -> Option<Interval> {
     let extra = (angle.low.clone() >> bits).bit_len() + 8;
     if extra > LONGEST_ANGLE {
@@ -163,13 +163,13 @@ fn less_turns(angle: &Interval, bits: usize) -> Option<Interval> {
     })
 }
 
-/// sin (first = 1) or cos (first = 0) of an angle, by the series at its lower end, widened by its width (slopes are at most 1).
+/// sin (first = 1) or cos (first = 0) of an angle: the series at its lower end, widened by its width (slopes are at most 1).
 fn series(angle: &Interval, first: u32, bits: usize) -> Option<Interval> {
     let size = angle.low.clone().abs() >> bits;
     if size >= IBig::from(LARGE_ANGLE) {
         return series(&less_turns(angle, bits)?, first, bits);
     }
-    // Terms first grow, up to e^x < 2^(1.5 x), and so do the errors carried along.
+    // Terms first grow up to e^x < 2^(1.5 x), and the propagated errors with them.
     let guard = 24 + 3 * (usize::try_from(size).unwrap_or(256) + 1);
     let work = bits + guard;
     let x = angle.low.clone() << guard;
@@ -188,7 +188,7 @@ fn series(angle: &Interval, first: u32, bits: usize) -> Option<Interval> {
     Some(Interval { low: &value - &width, high: value + width })
 }
 
-/// A float format, as far as rounding to it goes.
+/// A float format, with its rounding.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Float {
     /// 64 bits.
@@ -214,7 +214,7 @@ impl Float {
         }
     }
 
-    /// The smallest normal number: below it the spacing shrinks no more.
+    /// The smallest normal number; below it the spacing is constant.
     pub fn smallest_normal(self) -> f64 {
         match self {
             Float::F64 => f64::MIN_POSITIVE,
@@ -222,7 +222,7 @@ impl Float {
         }
     }
 
-    /// The smallest positive number, the spacing below [`Float::smallest_normal`].
+    /// The smallest positive number: the spacing below [`Float::smallest_normal`].
     pub fn smallest(self) -> f64 {
         match self {
             Float::F64 => f64::from_bits(1),
@@ -238,7 +238,7 @@ impl Float {
         }
     }
 
-    /// The value that a literal has in this format; exact as f64.
+    /// The value of a literal in this format; exact as f64.
     pub fn read(self, text: &str) -> Option<f64> {
         match self {
             Float::F64 => text.parse::<f64>().ok(),
@@ -272,8 +272,8 @@ impl Float {
         }
     }
 
-    /// The outermost numbers of this format between two others; where there is none, those next to both, so that the interval is never
-    /// empty. What lies beyond the largest number is taken to be that.
+    /// The outermost numbers of this format between two others. Without such numbers, the neighbours of both, so that the interval is never empty.
+    /// Numbers beyond the largest number count as that number.
     pub fn between(self, low: f64, high: f64) -> (f64, f64) {
         let most = self.largest();
         let (low, high) = (low.clamp(-most, most), high.clamp(-most, most));
@@ -302,12 +302,12 @@ impl Float {
         })
     }
 
-    /// Whether `value` is the float nearest to the constant (ties to even): by comparison with the midpoints to its neighbours.
+    /// Whether `value` is the float nearest to the constant (ties to even), by comparison with the midpoints to its neighbours.
     pub fn is_nearest(self, value: f64, formula: &Formula) -> bool {
         self.decides(value, formula, usize::MAX).unwrap_or(false)
     }
 
-    /// The same, with enclosures of so many bits at most; `None` where they do not tell.
+    /// The same with enclosures of at most this many bits; `None` if they do not decide.
     pub fn decides(self, value: f64, formula: &Formula, bits: usize) -> Option<bool> {
         if !value.is_finite() {
             return Some(false);
@@ -315,7 +315,7 @@ impl Float {
         let exact = |x: f64| Rational::try_from(x).ok();
         let own = exact(value)?;
         let (below, above) = self.neighbours(value);
-        // Beyond the largest float the midpoint is where the next one would be.
+        // Beyond the largest float, the midpoint uses the next float of an unlimited range.
         let midpoint = |neighbour: f64, other: f64| match exact(neighbour) {
             Some(neighbour) => Some((&own + neighbour) / Rational::from(2)),
             None => Some((&own * Rational::from(3) - exact(other)?) / Rational::from(2)),

@@ -1,4 +1,4 @@
-//! The equations of an arm the plain way: what a textbook writes, for one state at a time, in any exact numbers.
+//! The equations of an arm in textbook form, for a single state, in any exact number type.
 //!
 //! | quantity | how | file |
 //! |---|---|---|
@@ -9,7 +9,7 @@
 //! | τ, Y | forces and moments of each body, link by link, in the base frame (Newton and Euler; Sect. 7.5) | [`newton_euler`] |
 //! | q̈ | solution of B q̈ = τ - C q̇ - F - g | [`lagrange`] |
 //!
-//! Nothing here is shared with the generator but the reading of the description into a
+//! The generator shares only the reading of the description into a
 //! [`Manipulator`](armgen_description::manipulator::Manipulator): its numbers arrive as text.
 
 pub mod arm;

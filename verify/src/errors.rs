@@ -1,12 +1,12 @@
-//! Rounding errors as they occur: the functions of a module in its own scalar against far finer evaluation, at random states of the box,
-//! beside what the two bounds say.
+//! Measures rounding errors: runs the functions of a module in its scalar and with much higher precision, at random states of the box, and
+//! compares the errors with both bounds.
 //!
-//! All states run in lanes, the reference with 106 bits ([`twofold`]); a state whose error comes near to a bound, or is the worst so far, is
-//! evaluated again with 256 bits ([`Wide`]), and what is shown comes from there.
+//! All states run in lanes, with a reference of 106 bits ([`twofold`]). A state whose error approaches a bound, or is the largest so far, is
+//! evaluated again with 256 bits ([`Wide`]); reported errors come from there.
 //!
-//! Near singular configurations the largest bound of a million states can be that of one of them, and its error is one draw of what roundings
-//! can come to. So where a bound is the largest yet, states that differ in the last digits are tried as well: the bound is the same there, the
-//! roundings are not.
+//! A single state near a singular configuration can have the largest bound of a million states, but its error is only one sample of the possible
+//! rounding errors. So, for each new largest bound, states that differ in the last digits are tried, too: they have the same bound and other
+//! rounding errors.
 
 use armgen_description::manipulator::Manipulator;
 
@@ -24,12 +24,12 @@ use crate::reader::{Function, Module};
 use crate::residual::{Equations, Residual};
 use crate::stream::Stream;
 
-/// What was seen of a function; sizes are those of the largest entry.
+/// Measurements of a function; sizes are those of the largest entry.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Seen {
     /// The function.
     pub name: String,
-    /// States tried; neighbours of states with a large bound count for sizes and for bounds exceeded alone.
+    /// Number of states. Neighbours of states with a large bound only count for sizes and for exceeded bounds.
     pub states: u64,
     /// Largest value.
     pub value: f64,
@@ -39,39 +39,39 @@ pub struct Seen {
     pub running: f64,
     /// The a-priori bound.
     pub a_priori: f64,
-    /// States at which the running bound was exceeded.
+    /// Number of states whose error exceeded the running bound.
     pub beyond_running: u64,
-    /// States at which the a-priori bound was exceeded.
+    /// Number of states whose error exceeded the a-priori bound.
     pub beyond_a_priori: u64,
-    /// States that the a-priori bound does not speak of: a divisor is smaller than it says.
+    /// Number of states outside the scope of the a-priori bound, because a divisor is too small.
     pub outside: u64,
-    /// What was seen of the residual, where it has a bound.
+    /// Measurements of the residual, if it has a bound.
     pub residual: Option<Torques>,
-    /// States at which a divisor may be off by more than √u of itself, half of its digits, as at the singular configurations of
-    /// `operational_inertia`: no size above is taken from them; the bounds must hold all the same.
+    /// Number of states where a divisor may have a relative error above √u, half of its digits, as at singular configurations of
+    /// `operational_inertia`. They do not count for the sizes above, but the bounds must still hold.
     pub singular: u64,
 }
 
-/// How far accelerations were from solving the equations of motion, where all pivots were positive.
+/// Residuals of accelerations in the equations of motion, for states with positive pivots.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Torques {
     /// The bound.
     pub bound: Residual,
     /// Largest residual of any row.
     pub largest: f64,
-    /// The largest part of its bound that a residual was.
+    /// Largest quotient of residual and bound.
     pub part: f64,
-    /// States at which it was more than its bound.
+    /// Number of states whose residual exceeded the bound.
     pub beyond: u64,
 }
 
 impl Seen {
-    /// The running bound by the error; `None` if there was no error.
+    /// The quotient of running bound and error; `None` without an error.
     pub fn ratio(&self) -> Option<f64> {
         (self.error > 0.0).then(|| self.running / self.error)
     }
 
-    /// What was seen at other states too.
+    /// Merges the measurements at other states.
     pub fn join(&mut self, other: &Seen) {
         self.states += other.states;
         self.value = self.value.max(other.value);
@@ -89,16 +89,16 @@ impl Seen {
     }
 }
 
-/// A function ready to be measured.
+/// A function prepared for measurement.
 #[derive(Clone, Debug)]
 pub struct Subject {
-    /// The program that runs.
+    /// The program under measurement.
     pub program: Program,
     exact: Vec<Wide>,
     pairs: Vec<Pair>,
     table: LaneTable,
     bound: Bound,
-    /// The steps that are entries, each once, with the largest a-priori bound that holds for it.
+    /// The steps that are entries, each once, with its largest a-priori bound.
     entries: Vec<(usize, f64)>,
     divisors: Vec<usize>,
     equations: Option<Equations>,
@@ -132,7 +132,7 @@ impl Subject {
         module.functions.iter().map(of).collect()
     }
 
-    /// The same with other values of the literals for the reference: as if the text had other literals than it should.
+    /// The same with changed literals in the reference, as if the text had wrong literals.
     pub fn with_literals(self, exact: impl Fn(&Wide) -> Wide) -> Subject {
         let all = |literals: &[Wide]| -> Vec<Wide> { literals.iter().map(&exact).collect() };
         let equations = self.equations.as_ref().map(|equations| Equations {
@@ -160,7 +160,7 @@ impl Subject {
         }
     }
 
-    /// Looks at the states of a batch. Which lane has the largest running bound yet, if one has.
+    /// Evaluates the states of a batch. Returns the lane with the largest running bound so far, if this batch has it.
     fn look(&mut self, side: &Batch, real: Float, scratch: &mut Vec<Twofold>, seen: &mut Seen) -> Option<Option<usize>> {
         self.table.run(&side.own);
         twofold::values(&self.program, &self.pairs, &side.fine, scratch)?;
@@ -169,13 +169,13 @@ impl Subject {
         for &divisor in &self.divisors {
             let (value, error) = self.table.step(divisor);
             for lane in 0..LANES {
-                // A divisor is a pivot, which is positive, or the negative of one.
+                // A divisor is a positive pivot, or the negative of a pivot.
                 lost_sign[lane] |= exceeds(0.0, value[lane] * scratch[divisor].high[lane].signum());
                 singular[lane] |= exceeds(error[lane], digits * value[lane].abs());
                 outside[lane] |= self.bound.smallest_divisor.is_some_and(|least| exceeds(least, value[lane].abs() - error[lane]));
             }
         }
-        // By lane: whether a bound may have been exceeded, and the largest error.
+        // For each lane: whether a bound may be exceeded, and the largest error.
         let (mut near, mut worst) = ([false; LANES], [0.0f64; LANES]);
         let mut largest = None;
         for &(entry, a_priori) in &self.entries {
@@ -206,7 +206,7 @@ impl Subject {
         Some(largest)
     }
 
-    /// How far the accelerations are from solving the equations.
+    /// Measures the residuals of the accelerations.
     fn look_at_residuals(
         &self,
         side: &Batch,
@@ -232,7 +232,7 @@ impl Subject {
         Some(())
     }
 
-    /// The state of a lane with 256 bits.
+    /// Evaluates the state of a lane again with 256 bits.
     fn look_again(&mut self, side: &Batch, lane: usize, singular: bool, outside: bool, seen: &mut Seen) -> Option<()> {
         let values = self.program.values(&WideArguments::new(&side.states[lane])?, &self.exact);
         let (mut beyond, mut beyond_a_priori) = (false, false);
@@ -254,7 +254,7 @@ impl Subject {
     }
 }
 
-/// Whether a is larger than b, or one of the two is not a number.
+/// Whether a is larger than b, or either is not a number.
 fn exceeds(a: f64, b: f64) -> bool {
     a > b || a.is_nan() || b.is_nan()
 }
@@ -273,10 +273,10 @@ impl Batch {
     }
 }
 
-/// Batches of neighbours that are tried of a state with the largest bound yet.
+/// Number of batches of neighbours for a state with a new largest bound.
 const BATCHES_OF_NEIGHBOURS: usize = 8;
 
-/// A state of the box whose arguments differ from another's in the last four bits; what is 0 stays 0.
+/// A state of the box that differs from another only in the last four bits; zeros stay 0.
 fn neighbour(state: &Arguments<f64>, domain: &Domain, stream: &mut Stream, real: Float) -> Arguments<f64> {
     state.beside(domain, |x, (low, high)| {
         let units = 2.0 * real.unit() * (stream.below(17) as f64 - 8.0);
@@ -284,10 +284,10 @@ fn neighbour(state: &Arguments<f64>, domain: &Domain, stream: &mut Stream, real:
     })
 }
 
-/// Batches of a run that are corners of the box alone.
+/// Number of initial batches with only corners of the box.
 const BATCHES_OF_CORNERS: u64 = 32;
 
-/// A state of the box; one in 8 is a corner, and one in 16 has about half of its entries at 0, or at the end of the box that is next to 0.
+/// A state of the box. One in 8 is a corner; one in 16 has about half of its entries at 0, or at the end of the box closest to 0.
 fn state(domain: &Domain, stream: &mut Stream, real: Float) -> Arguments<f64> {
     if stream.below(8) == 0 {
         return corner(domain, stream, real);
@@ -301,23 +301,23 @@ fn state(domain: &Domain, stream: &mut Stream, real: Float) -> Arguments<f64> {
     Arguments { pi, ..corner }
 }
 
-/// A run over states of a stream of its own.
+/// A run over the states of a separate stream.
 pub struct Run {
     subjects: Vec<Subject>,
     domain: Domain,
     real: Float,
     circle: Circle,
     stream: Stream,
-    /// Neighbours have draws of their own: which states are tried does not depend on what is seen.
+    /// A separate stream for neighbours, so that the choice of states does not depend on results.
     of_neighbours: Stream,
     scratch: Vec<Twofold>,
     batches: u64,
-    /// What has been seen of each function.
+    /// The measurements of each function.
     pub seen: Vec<Seen>,
 }
 
 impl Run {
-    /// A run that has seen nothing yet.
+    /// A run without measurements yet.
     pub fn new(manipulator: &Manipulator, module: &Module, subjects: Vec<Subject>, seed: u64) -> Run {
         Run {
             seen: subjects.iter().map(Subject::nothing).collect(),
@@ -332,7 +332,7 @@ impl Run {
         }
     }
 
-    /// Goes on over so many batches of [`LANES`] states.
+    /// Continues with this many batches of [`LANES`] states.
     pub fn go_on(&mut self, batches: u64) -> Result<(), String> {
         for _ in 0..batches {
             let of = if self.batches < BATCHES_OF_CORNERS { corner } else { state };

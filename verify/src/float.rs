@@ -1,10 +1,10 @@
-//! Execution of programs in floats, as the emitted functions execute: the same operations in the same order, sine and cosine of libm.
+//! Executes programs in floats like the emitted functions: the same operations in the same order, with sine and cosine of libm.
 
 use crate::element::Element;
 use crate::enclosure::Float;
 use crate::program::{Argument, Inputs, Program, Turn};
 
-/// States that run side by side where many are measured.
+/// Number of states that run in parallel lanes.
 pub const LANES: usize = 8;
 
 /// Arguments of emitted functions.
@@ -40,7 +40,7 @@ impl<T: Copy> Arguments<T> {
         }
     }
 
-    /// The same entry of all states side by side.
+    /// Gathers each entry of all states into lanes.
     pub fn gather<U, const N: usize>(states: &[Arguments<T>; N], side: impl Fn([T; N]) -> U) -> Arguments<U> {
         Arguments::each(|argument| {
             let length = states.first().map_or(0, |state| state.of(argument).len());
@@ -48,19 +48,19 @@ impl<T: Copy> Arguments<T> {
         })
     }
 
-    /// Each entry together with the same entry of others, in the order of the fields.
+    /// Combines each entry with the same entry of others, in the order of the fields.
     pub fn beside<U: Copy, V>(&self, others: &Arguments<U>, mut f: impl FnMut(T, U) -> V) -> Arguments<V> {
         Arguments::each(|argument| self.of(argument).iter().zip(others.of(argument)).map(|(a, b)| f(*a, *b)).collect())
     }
 
-    /// The same in other numbers.
+    /// The same in another number type.
     pub fn map<U>(&self, f: impl Fn(T) -> U) -> Arguments<U> {
         Arguments::each(|argument| self.of(argument).iter().map(|x| f(*x)).collect())
     }
 }
 
 impl<T> Arguments<T> {
-    /// All arguments, asked for in the order of the fields.
+    /// Builds all arguments from `of`, in the order of the fields.
     pub(crate) fn each(mut of: impl FnMut(Argument) -> Vec<T>) -> Arguments<T> {
         Arguments {
             pi: of(Argument::Pi),
@@ -81,7 +81,7 @@ macro_rules! stribeck {
             type Real = $float;
             include!("reader/sines/stribeck.rs");
 
-            /// exp(-|rate| / velocity), as it is computed.
+            /// exp(-|rate| / velocity), as computed by emitted modules.
             pub(crate) fn of(rate: Real, velocity: Real) -> Real {
                 stribeck(rate, velocity)
             }
@@ -92,8 +92,8 @@ macro_rules! stribeck {
 stribeck!(stribeck_f64, f64);
 stribeck!(stribeck_f32, f32);
 
-/// How far what is left of Stribeck friction can be from the exact value, at x = |dq| / v with a rounded v: two units of roundoff of the
-/// function, and two of x, which weigh x times; what is below 1e-17 is 0.
+/// Error bound of exp(-x) at x = |dq| / v with a rounded v: two units of roundoff of the function, and two units of x, multiplied by x. Values
+/// below 1e-17 become 0.
 pub(crate) fn stribeck_error(x: f64, value: f64, real: Float) -> f64 {
     (2.1 + 2.1 * x.min(64.0)) * real.unit() * value + if value == 0.0 { 1e-17 } else { 0.0 }
 }
@@ -146,7 +146,7 @@ macro_rules! inputs {
 inputs!(f64, libm::sincos, stribeck_f64::of);
 inputs!(f32, libm::sincosf, stribeck_f32::of);
 
-/// The floats of states side by side, so that a program is walked through once for all of them.
+/// A float per lane, so that one pass through a program computes all states.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Lanes(pub [f64; LANES]);
 
@@ -229,7 +229,7 @@ impl Inputs<Lanes> for [Arguments<f64>; LANES] {
 }
 
 impl Program {
-    /// The entries of the result in the module's scalar; the arguments are rounded to it first.
+    /// The entries of the result in the module's scalar; rounds the arguments to it first.
     pub fn run_float(&self, arguments: &Arguments<f64>, real: Float) -> Vec<f64> {
         match real {
             Float::F64 => {

@@ -1,10 +1,10 @@
 //! Exact constants as plain formulas: `1/2*sqrt(3) - 2*pi`, `0.85*sin(7/10)`.
 //!
-//! The constants of a description and the claimed values of literals both come as such text and take the same way from there: parsed here,
-//! then evaluated in an [`Arithmetic`](crate::arithmetic::Arithmetic) or enclosed to any precision ([`crate::enclosure`]).
+//! The constants of a description and the claimed values of literals have this text form. They are parsed here, then evaluated in an
+//! [`Arithmetic`](crate::arithmetic::Arithmetic) or enclosed to any precision ([`crate::enclosure`]).
 //!
-//! A name, `k0` and so on, stands for a formula that is defined once: the constants of an arm with general angles are graphs, and
-//! written out they would be exponentially long ([`mod@definitions`]).
+//! A name such as `k0` denotes a formula that is defined once. The constants of an arm with general angles are graphs; their expanded form would
+//! have exponential length ([`mod@definitions`]).
 
 pub mod definitions;
 pub mod parse;
@@ -22,20 +22,20 @@ use definitions::{Defined, Definition};
 /// An exact fraction.
 pub type Rational = dashu_ratio::RBig;
 
-/// Nested roots that follow from other roots: each as a formula of roots that stand before it.
+/// Nested roots that depend on other roots, each as a formula of earlier roots.
 pub type Dependent = BTreeMap<Root, Formula>;
 
-/// What is not a fraction and has a square that is simpler.
+/// An irrational number with a simpler square.
 #[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Root {
-    /// The square root of an integer without a square factor that trial division finds. A product holds at most one.
+    /// The square root of an integer without square factors that trial division finds. A product contains at most one.
     Integer(UBig),
     /// The square root of any other number.
     Nested(Box<Formula>),
 }
 
 impl Root {
-    /// The integer under it, if it is one.
+    /// The integer radicand, if it is an integer.
     pub fn integer(&self) -> Option<&UBig> {
         match self {
             Root::Integer(n) => Some(n),
@@ -43,7 +43,7 @@ impl Root {
         }
     }
 
-    /// The number under it, if that is no integer.
+    /// The radicand, if it is not an integer.
     pub fn nested(&self) -> Option<&Formula> {
         match self {
             Root::Integer(_) => None,
@@ -65,7 +65,7 @@ pub enum Formula {
     Sine(Box<Formula>),
     /// The cosine of an angle in rad.
     Cosine(Box<Formula>),
-    /// The angle, rad, whose tangent is a fraction between 0 and 1.
+    /// The angle in rad whose tangent is this fraction between 0 and 1.
     Arctangent(Rational),
     /// A sum.
     Sum(Vec<Formula>),
@@ -73,14 +73,14 @@ pub enum Formula {
     Product(Vec<Formula>),
     /// An integer power.
     Power(Box<Formula>, i32),
-    /// A formula that is defined once.
+    /// A formula with a definition.
     Defined(Arc<Definition>),
 }
 
-/// The roots and angles that occur in formulas; a root stands after those inside it.
+/// The roots and angles in formulas; a root follows the roots inside it.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Atoms {
-    /// Roots; those of integers have no factor in common, and what stands under a root of the formulas is a product of them.
+    /// Roots. Integer radicands are coprime, and every integer radicand of the formulas is a product of them.
     pub roots: Vec<Root>,
     /// Angles of sines and cosines.
     pub angles: BTreeSet<Formula>,
@@ -89,7 +89,7 @@ pub struct Atoms {
 const TRIAL_DIVISION: u32 = 10_000;
 
 impl Formula {
-    /// The fraction, if this is one.
+    /// The fraction, if the formula is a fraction.
     pub fn as_rational(&self) -> Option<&Rational> {
         match self {
             Formula::Rational(value) => Some(value),
@@ -97,8 +97,8 @@ impl Formula {
         }
     }
 
-    /// The value where fractions, roots, pi and angles (sine, cosine) have the values given; `None` where one has none, or for a division by 0.
-    /// `defined` keeps the values of what is defined, for one choice of all the others.
+    /// The value for given values of fractions, roots, pi and angles (sine, cosine); `None` without such a value or for a division by 0. `defined`
+    /// caches the values of definitions, for fixed values of the others.
     pub fn evaluate<E: Element>(
         &self,
         rational: &dyn Fn(&Rational) -> Option<E>,
@@ -115,7 +115,7 @@ impl Formula {
             Formula::Root(inner) => root(inner),
             Formula::Sine(inner) => Some(angle(inner)?.0),
             Formula::Cosine(inner) => Some(angle(inner)?.1),
-            // As a number an angle is tied to nothing, like pi: a random value of its own.
+            // As a number, an angle is independent like pi: a separate random value.
             Formula::Arctangent(_) => Some(angle(self)?.0),
             Formula::Sum(terms) => {
                 let (first, rest) = terms.split_first()?;
@@ -138,7 +138,7 @@ impl Formula {
         }
     }
 
-    /// The product, fractions taken together in front.
+    /// The product, with fractions combined in front.
     fn by(self, other: Formula) -> Formula {
         Formula::product_of(vec![self, other])
     }
@@ -177,7 +177,7 @@ impl Formula {
         }
     }
 
-    /// What it is the sum of.
+    /// The terms of the sum.
     fn terms(&self) -> &[Formula] {
         match self {
             Formula::Sum(terms) => terms,
@@ -185,7 +185,7 @@ impl Formula {
         }
     }
 
-    /// Whether it is written with a minus sign in front.
+    /// Whether its text begins with a minus sign.
     fn leads_negative(&self) -> bool {
         match self {
             Formula::Rational(value) => value.is_negative(),
@@ -194,7 +194,7 @@ impl Formula {
         }
     }
 
-    /// Sine and cosine of the angle that this is, exactly: of eighths of a turn and of quarter turns with an arc tangent by their roots.
+    /// Exact sine and cosine of this angle, by roots: for eighths of a turn, and for quarter turns plus an arc tangent.
     pub fn circle(&self) -> (Formula, Formula) {
         let mut angle = (Rational::ZERO, None);
         let known = self.add_turns(&Rational::ONE, &mut angle);
@@ -216,7 +216,7 @@ impl Formula {
         }
     }
 
-    /// Adds `factor` times this angle, as quarter turns and the tangent of one arc tangent; whether it is made of nothing else.
+    /// Adds `factor` times this angle, as quarter turns and the tangent of a single arc tangent; returns whether that is possible.
     fn add_turns(&self, factor: &Rational, angle: &mut (Rational, Option<Rational>)) -> bool {
         match self {
             Formula::Pi => {
@@ -257,13 +257,13 @@ impl Formula {
             }
             Formula::Sum(parts) | Formula::Product(parts) => parts.iter().for_each(|part| part.collect(atoms)),
             Formula::Power(base, _) => base.collect(atoms),
-            // Once for all: [`Atoms::of`].
+            // [`Atoms::of`] visits each definition once.
             Formula::Defined(_) => {}
         }
     }
 }
 
-/// Formulas calculate with themselves: what arises is the formula of the result.
+/// Arithmetic on formulas: the result is a formula.
 impl Element for Formula {
     fn plus(&self, other: &Self) -> Self {
         match (self, other) {
@@ -293,7 +293,7 @@ impl Element for Formula {
         match self {
             Formula::Rational(value) if value.is_zero() => self.clone(),
             Formula::Rational(value) => Formula::Rational(Rational::from(if value.is_negative() { -1 } else { 1 })),
-            // There is no formula for it, and none is asked for where formulas calculate: in kinematics.
+            // Such a sign has no formula. Only kinematics uses formulas as elements, and it takes no signs.
             other => other.clone(),
         }
     }
@@ -342,7 +342,7 @@ impl fmt::Display for Formula {
 }
 
 impl Atoms {
-    /// The roots and angles of some formulas.
+    /// The roots and angles in some formulas.
     pub fn of<'a>(formulas: impl IntoIterator<Item = &'a Formula>) -> Atoms {
         let mut atoms = Atoms::default();
         let formulas: Vec<&Formula> = formulas.into_iter().collect();
@@ -362,7 +362,7 @@ impl Atoms {
     }
 }
 
-/// Adds an integer to some that have no factors in common: what it shares with one stands alone afterwards. No square stays whole.
+/// Adds an integer to coprime factors, splitting common factors off. No factor stays a square.
 fn add_coprime(coprime: &mut Vec<UBig>, n: UBig) {
     let root = n.sqrt();
     if &root * &root == n {
@@ -382,7 +382,7 @@ fn add_coprime(coprime: &mut Vec<UBig>, n: UBig) {
     }
 }
 
-/// The square root of an integer from the roots of integers without common factors; `None` if they are not enough.
+/// The square root of an integer from roots of coprime integers; `None` if they do not suffice.
 pub fn root_from_coprime<'a, E: Element + 'a>(n: &UBig, one: E, roots: impl Iterator<Item = (&'a UBig, E)>) -> Option<E> {
     let (mut rest, mut product) = (n.clone(), one);
     for (factor, root) in roots {
@@ -394,7 +394,7 @@ pub fn root_from_coprime<'a, E: Element + 'a>(n: &UBig, one: E, roots: impl Iter
     rest.is_one().then_some(product)
 }
 
-/// The square root of a fraction: sqrt(p/q) = sqrt(p q)/q with the squares taken out.
+/// The square root of a fraction: sqrt(p/q) = sqrt(p q)/q without square factors.
 fn root_of_rational(value: &Rational) -> Result<Formula, String> {
     if value.is_negative() {
         return Err(format!("the square root of {value} is not a number"));
@@ -450,7 +450,7 @@ mod tests {
         assert!(Formula::parse(&"(".repeat(100)).is_err());
     }
 
-    /// What is calculated is printed as what reads back as it, whatever stands first in a sum.
+    /// A printed result parses back to the same formula, whichever term comes first in a sum.
     #[test]
     fn results_are_read_as_they_are_printed() {
         let parse = |text: &str| Formula::parse(text).expect("a formula");

@@ -1,5 +1,5 @@
-//! Identities among the functions of a module, with no equation of the checker's own in between: the emitted functions themselves are run in
-//! dual numbers where a derivative is needed.
+//! Identities among the functions of a module, independent of the checker's own equations. Where an identity needs a derivative, the emitted
+//! functions run in dual numbers.
 
 use crate::arithmetic::dual::Dual;
 use crate::arithmetic::prime::{Prime, Residue};
@@ -23,7 +23,7 @@ struct Running<'a> {
     nominal_base: &'a [Formula],
 }
 
-/// Why an identity is not tried that needs a function which the module does not have.
+/// The reason for skipping an identity whose functions are missing in the module.
 const ABSENT: &str = "the module does not have its functions";
 
 type Entries = Vec<Residue>;
@@ -63,7 +63,7 @@ impl Running<'_> {
         entries.ok_or(format!("`{name}` has no value"))
     }
 
-    /// Torques without friction that grows with the load, of modules that have it.
+    /// Torques without load-dependent friction, for modules that have it.
     fn without_load_friction(&self, torques: Entries, state: &State<Residue>) -> Result<Entries, String> {
         if !self.has("load_friction") {
             return Ok(torques);
@@ -169,7 +169,7 @@ const IDENTITIES: [Identity; 10] = [
     }),
 ];
 
-/// All identities of a module whose functions have been read and whose literals are known.
+/// Checks all identities of a module with readable functions and known literals.
 pub fn check(checker: &Checker, module: &Module, reports: &[FunctionReport], nominal: &[Formula]) -> Vec<IdentityReport> {
     let nominal_base = checker.base().map_or(&[][..], |base| &base.nominal);
     let over_points = |holds: &dyn Fn(&Running<'_>) -> Result<bool, String>| {

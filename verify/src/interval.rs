@@ -1,9 +1,9 @@
-//! Intervals between multiples of 2^-bits, rounded outwards.
+//! Intervals with ends that are multiples of 2^-bits, rounded outwards.
 
 use dashu_base::Signed;
 use dashu_int::IBig;
 
-/// Two integers a, b for the numbers between a/2^bits and b/2^bits.
+/// The interval from a/2^bits to b/2^bits, for two integers a and b.
 #[derive(Clone, Debug)]
 pub(crate) struct Interval {
     pub(crate) low: IBig,

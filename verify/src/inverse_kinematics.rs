@@ -1,18 +1,17 @@
-//! Certificates of emitted inverse kinematics: whether a module `robot_ik.rs` finds all solutions.
+//! Certificates for emitted inverse kinematics: whether a module `robot_ik.rs` finds all solutions.
 //!
-//! 1. *Text*: every building block is byte for byte the tested one, every number the float nearest to its exact value, the function a call
-//!    of a construction;
-//!    all else, comments and names of branches, is what armgen writes for the description.
-//!    With these exact values the loop closes, J1 L1 ... Jn Ln = 1, at random points of prime fields; the construction may be called with it.
+//! 1. *Text*: every building block equals the tested one byte for byte, every number is the float nearest to its exact value, and the function
+//!    calls a construction. Everything else, comments and names of branches included, equals the output of armgen for the description.
+//!    With the exact values the loop closes, J1 L1 ... Jn Ln = 1, at random points of prime fields, and meets the construction's conditions.
 //! 2. *Soundness*: the blocks of closed forms, as texts, run in prime fields: every branch closes the loop exactly (`soundness`).
 //! 3. *Generic completeness*: at random poses in prime fields the equations have as many solutions as the construction has branches.
-//! 4. *Counts*: at rational poses the number of real solutions is known by Sturm's theorem, and the module as it stands there, run in double
-//!    precision, returns so many.
+//! 4. *Counts*: at rational poses Sturm's theorem gives the number of real solutions. The unmodified module, run in double precision, returns
+//!    the same number.
 //!
-//! A module in C is a translation of that in Rust, which is verified in its place; the text in C must be what armgen translates from it.
+//! A C module is a translation of the Rust module, which is verified instead; its text must equal armgen's translation.
 //!
-//! Classes are not decided here: the exact values are claims of the generator, and what a construction asks of its loop is tested on them.
-//! The solutions are counted with equations, arrangements and an algebra of their own (`forms`, `quotient`), which know no classes.
+//! This check does not classify arms: the exact values are claims of the generator, and the conditions of a construction are tested on them.
+//! It counts solutions with separate equations, arrangements and algebra (`forms`, `quotient`), which do not depend on classes.
 
 mod certificate;
 mod chain;
@@ -58,39 +57,39 @@ pub fn is_one(text: &str) -> bool {
     text.contains("\nmod all_solutions {\n") || text.contains("\n// There is no `inverse_kinematics`: ") || is_c(text)
 }
 
-/// Whether it is one in C.
+/// Whether it is a C module.
 pub fn is_c(text: &str) -> bool {
     text.starts_with("/*") && (text.contains("_nearest_to(") || text.contains("\n * There is no inverse kinematics: "))
 }
 
-/// So many rational poses are counted.
+/// Number of rational poses for counts.
 pub const POSES: usize = 64;
 
-/// The generator's part, in the language and the scalar of the module that is verified.
+/// The generator's proposal, in the language and the scalar of the module under verification.
 #[derive(Clone, Debug)]
 pub struct Proposal {
-    /// Exact values, which need no trust, or why the arm has no construction.
+    /// Exact values, which need no trust, or the reason why the arm has no construction.
     pub values: Result<Values, String>,
     /// The module in Rust.
     pub rust: String,
-    /// The module in C, of a module in C; an error is a fault of the generator.
+    /// The C module, if a C module is verified; an error is a fault of the generator.
     pub c: Option<Result<String, String>>,
 }
 
-/// Exact values of the numbers of a construction, in the order of its text.
+/// Exact values of a construction's numbers, in the order of its text.
 #[derive(Clone, Debug)]
 pub struct Values {
-    /// Of each loop.
+    /// Numbers of each loop.
     pub loops: Vec<Vec<Number>>,
-    /// Of the arm's own loop, where it has fewer joints than the pose has rows.
+    /// Numbers of the arm's own loop, if it has fewer joints than the pose has rows.
     pub own: Option<Vec<Number>>,
-    /// Of the link with the given joint.
+    /// Numbers of the link that the given joint moves.
     pub given: Vec<Number>,
     /// A length of the arm's size, m.
     pub length: Number,
 }
 
-/// What was found of a module of inverse kinematics.
+/// The findings about a module of inverse kinematics.
 #[derive(Clone, Debug, Default)]
 pub struct Report {
     /// Name of the robot.
@@ -101,43 +100,43 @@ pub struct Report {
     pub input: String,
     /// SHA-256 of the module, hexadecimal.
     pub output: String,
-    /// The numbers of the loop, in the order of the text, exactly.
+    /// The exact values of the loop's numbers, in the order of the text.
     pub exact_values: Vec<String>,
-    /// The module says that the arm has no construction.
+    /// Whether the module states that the arm has no construction.
     pub absent: bool,
-    /// The module is in C: what is said is found of the module in Rust, of which it is the translation, line by line.
+    /// Whether the module is in C: the findings concern the Rust module, and the C module is its translation, line by line.
     pub translated: bool,
-    /// At most so many solutions, as the module says.
+    /// Maximum number of solutions, according to the module.
     pub most: usize,
-    /// So many numbers are the floats nearest to their exact values.
+    /// Number of constants that are the floats nearest to their exact values.
     pub numbers: usize,
-    /// So many branches close the loop at random poses of prime fields, of a construction of closed forms.
+    /// Number of branches that close the loop at random poses of prime fields, for a construction of closed forms.
     pub sound: Option<usize>,
-    /// Solutions at random poses, complex ones too, and the joints in the order in which the loop was read for that, from 1.
+    /// Number of solutions at random poses, including complex ones; and the order of the joints in the loop that counted them, from 1.
     pub generic: Option<(usize, Vec<usize>)>,
-    /// Rational poses at which the module returns as many solutions as there are.
+    /// Number of rational poses where the module returns all solutions.
     pub equal: usize,
-    /// Of these, poses without a solution.
+    /// Number of these poses without a solution.
     pub unreachable: usize,
-    /// Rational poses at which it says that it does not know.
+    /// Number of rational poses where the module reports uncertainty.
     pub near: usize,
-    /// Of these, poses at which solutions do meet.
+    /// Number of these poses with coincident solutions.
     pub singular: usize,
-    /// Rational poses at which solutions are not finitely many, or their number was not found.
+    /// Number of rational poses with infinitely many solutions or an undetermined count.
     pub undecided: usize,
-    /// Why nothing was counted, where that is so.
+    /// The reason why nothing was counted, if so.
     pub uncounted: Option<String>,
-    /// What is wrong.
+    /// The faults.
     pub faults: Vec<String>,
 }
 
 impl Report {
-    /// Whether nothing is wrong.
+    /// Whether there are no faults.
     pub fn passed(&self) -> bool {
         self.faults.is_empty()
     }
 
-    /// What a report that passed comes to, in a line.
+    /// A one-line summary of a report that passed.
     pub fn summary(&self) -> String {
         let poses = self.equal + self.near + self.undecided;
         match (&self.generic, &self.uncounted) {
@@ -201,7 +200,7 @@ impl fmt::Display for Report {
     }
 }
 
-/// Verifies the text of a module of inverse kinematics against the text of its description, with counts at so many rational poses.
+/// Verifies a module of inverse kinematics against its description, and counts solutions at this number of rational poses.
 pub fn verify(source: &Source, text: &str, proposal: &Proposal, poses: usize) -> Report {
     let hash = crate::hash;
     let mut report = Report { input: hash(source.text()), output: hash(text), ..Report::default() };
@@ -214,7 +213,7 @@ pub fn verify(source: &Source, text: &str, proposal: &Proposal, poses: usize) ->
         report.faults.push(format!("line {line}: the character {}, which cannot be seen", name_of(c)));
         return report;
     }
-    // A module in C is judged by that in Rust, of which it is a translation.
+    // A C module is checked through the Rust module of which it must be a translation.
     report.translated = is_c(text);
     let in_rust = if report.translated { proposal.rust.as_str() } else { text };
     if let Err(fault) = fill(&mut report, &manipulator, &proposal.values, source, in_rust, poses) {
@@ -226,13 +225,13 @@ pub fn verify(source: &Source, text: &str, proposal: &Proposal, poses: usize) ->
     report
 }
 
-/// The first character that cannot be seen, and its line.
+/// The first invisible character, with its line.
 fn hidden(text: &str) -> Option<(usize, char)> {
     text.split('\n').zip(1..).find_map(|(line, number)| Some((number, line.chars().find(|c| is_hidden(*c))?)))
 }
 
-/// The first line that is not the one that armgen writes for the description: all that is not judged by what it does, comments and the names of
-/// branches among it. In the first line the name of the file may be another.
+/// The first line that differs from armgen's output for the description. This covers everything that the other checks do not judge by its
+/// effect, such as comments and branch names. The file name in the first line may differ.
 fn difference(proposal: &Proposal, source: &Source, text: &str) -> Option<String> {
     let (comment, wanted) = match &proposal.c {
         Some(c) if is_c(text) => ("/* ", c.as_ref()),
@@ -250,7 +249,7 @@ fn difference(proposal: &Proposal, source: &Source, text: &str) -> Option<String
     Some(format!("line {}: {found} where armgen writes {wanted}", number + 2))
 }
 
-/// The scalar of a module, as it says.
+/// The scalar according to the module.
 pub fn scalar_of(text: &str) -> Scalar {
     let single = ["pub type Real = f32;", "\ntypedef float "].iter().any(|line| text.contains(line));
     if single {
@@ -275,7 +274,7 @@ fn fill(
     let manipulator = &points::without_bodies(manipulator);
     report.scalar = module.real.name();
     report.most = module.most;
-    // The first line has the name of a file, which can be chosen: poses that follow from it could be chosen, too.
+    // The seed omits the first line: it contains a freely chosen file name, which could otherwise select the poses.
     let (_, chosen) = text.split_once('\n').unwrap_or_default();
     let seed: [u8; 32] = Sha256::new().chain_update(source.text()).chain_update([0]).chain_update(chosen).finalize().into();
     let mut stream = Stream::of(seed);
@@ -321,7 +320,7 @@ fn fill(
     ));
     let branches =
         if module.branches.is_empty() { module.most } else { module.branches.iter().filter(|b| !b.is_empty()).count() };
-    // Of an arm with virtual joints those branches count that have them at 0.
+    // For an arm with virtual joints, only branches with these joints at 0 count.
     let lost = match (&module.own, sound) {
         (None, _) if !module.branches.is_empty() => generic.solutions != branches,
         (Some(_), Some((_, own))) => {
@@ -375,7 +374,7 @@ fn fill(
     Ok(())
 }
 
-/// Exact values of the numbers of loops, in order: the generator's, which need no trust.
+/// Exact values of the loops' numbers, in order. The generator proposes them; they need no trust.
 struct Claims {
     loops: Vec<Vec<Formula>>,
     own: Option<Vec<Formula>>,
@@ -394,7 +393,7 @@ fn claims(values: &Result<Values, String>) -> Result<Claims, String> {
     })
 }
 
-/// Whether all numbers are the floats nearest to what is claimed, or to the description; how many there are.
+/// Checks that all numbers are the floats nearest to the claimed values or to those of the description; returns their count.
 fn numbers(module: &Text, manipulator: &Manipulator, claims: &Claims) -> Result<usize, String> {
     let nearest = |text: &str, exact: &Formula| {
         module.real.read(text.trim_start_matches('-')).is_some_and(|value| {
@@ -444,7 +443,7 @@ fn numbers(module: &Text, manipulator: &Manipulator, claims: &Claims) -> Result<
     Ok(count)
 }
 
-/// The most solutions that the construction has; the loop closes and the construction may be called with it at random points.
+/// The maximum number of solutions of the construction. At random points, the loop must close and meet the construction's conditions.
 fn construction(
     module: &Text,
     manipulator: &Manipulator,
@@ -502,10 +501,10 @@ fn construction(
     Ok(most)
 }
 
-/// So many random poses are tried for branches that need square roots.
+/// Maximum number of random poses for branches with square roots.
 const MOST_POSES: usize = 1 << 15;
 
-/// How many branches of a construction of closed forms close the loop, and the most of them at a pose that have all virtual joints at 0.
+/// The number of branches of a closed-form construction that close the loop; and the most of them at a pose with all virtual joints at 0.
 fn sound(
     module: &Text,
     manipulator: &Manipulator,
@@ -557,7 +556,7 @@ fn sound(
     Ok(Some((sound.into_iter().filter(|sound| *sound).count(), own)))
 }
 
-/// How far each solution is from the pose, in the columns from `first` on, which the target fixes.
+/// The distance of each solution from the pose, in the columns from `first` on, which the target fixes.
 fn misses(arm: &Arm<f64>, outcome: &run::Outcome, pose: &[[f64; 4]; 3], first: usize, manipulator: &Manipulator) -> Vec<f64> {
     use armgen_description::kinds::TaskRow;
     let rows = [TaskRow::X, TaskRow::Y, TaskRow::Z].map(|row| manipulator.task.contains(&row));
@@ -588,10 +587,10 @@ fn misses(arm: &Arm<f64>, outcome: &run::Outcome, pose: &[[f64; 4]; 3], first: u
     outcome.solutions.iter().map(miss).collect()
 }
 
-/// A solution of a pose with lengths of some metres is right to this, m or rad.
+/// Maximum error of a solution for poses with lengths of some metres, m or rad.
 const RIGHT: f64 = 1e-8;
 
-/// Whether what the module returns at a pose fits what is proved of it.
+/// Whether the module's result for a pose agrees with the proved count.
 fn judge(report: &mut Report, count: Count, outcome: &run::Outcome, misses: &[f64]) -> Result<(), String> {
     let found = outcome.solutions.len();
     let certain = matches!(outcome.verdict, Verdict::Complete | Verdict::Unreachable);

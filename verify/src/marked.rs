@@ -1,14 +1,14 @@
-//! Texts with lines that only some robots need, each of which ends in a mark.
+//! Texts with optional lines for some robots; each of these lines ends with a mark.
 
-/// Lines that only robots with Stribeck friction need.
+/// Lines for robots with Stribeck friction.
 pub(crate) const STRIBECK: &str = "with Stribeck friction";
-/// Lines that only robots need whose friction grows with the load.
+/// Lines for robots with load-dependent friction.
 pub(crate) const LOAD: &str = "with load friction";
 
-/// Lines that only modules with fused operations need.
+/// Lines for modules with fused operations.
 pub(crate) const FUSED: &str = "with fused operations";
 
-/// The text with those marked lines, without their marks, of which the mark is wanted; `sign`: how a comment begins.
+/// The text with only the wanted marked lines, without their marks; `sign` begins a comment.
 pub(crate) fn marked(text: &str, sign: &str, wanted: &[(&str, bool)]) -> String {
     let kept = |line: &str| {
         let is_marked = |(mark, wanted): &(&str, bool)| {

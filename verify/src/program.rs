@@ -1,4 +1,4 @@
-//! Straight-line programs as read from an emitted module, and their execution in any numbers.
+//! Straight-line programs of an emitted module, and their execution in any number type.
 
 use std::fmt;
 
@@ -42,7 +42,7 @@ impl Argument {
         }
     }
 
-    /// The argument of this name.
+    /// The argument with this name.
     pub fn named(name: &str) -> Option<Argument> {
         Some(match name {
             "pi" => Argument::Pi,
@@ -57,7 +57,7 @@ impl Argument {
     }
 }
 
-/// One step; operands are the numbers of earlier steps.
+/// A step; operands are the numbers of earlier steps.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Step {
     /// An entry of an argument.
@@ -66,13 +66,13 @@ pub enum Step {
     Literal(usize),
     /// Sine of an angle.
     Sine(Angle),
-    /// Cosine of one.
+    /// Cosine of an angle.
     Cosine(Angle),
     /// Sign of a joint rate.
     Sign(usize),
     /// Sign of a value.
     SignOf(usize),
-    /// exp(-|dq| / v) of a joint rate, v a literal.
+    /// exp(-|dq| / v) of a joint rate, with a literal v.
     Stribeck(usize, usize),
     /// -a
     Negate(usize),
@@ -82,14 +82,14 @@ pub enum Step {
     Subtract(usize, usize),
     /// a b
     Multiply(usize, usize),
-    /// a b, not rounded: the step that takes it is an addition, the only one, and rounds once
+    /// a b without rounding: its only use is an addition, which rounds once.
     Product(usize, usize),
     /// a / b
     Divide(usize, usize),
 }
 
 impl Step {
-    /// The steps that it takes.
+    /// The operands.
     pub fn operands(&self) -> [Option<usize>; 2] {
         match self {
             Step::Negate(a) | Step::SignOf(a) => [Some(*a), None],
@@ -103,28 +103,28 @@ impl Step {
     }
 }
 
-/// An integer combination of joint variables, and a constant that is added or taken away.
+/// An integer combination of joint variables, plus or minus a constant.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Angle {
     /// Joints with their factors.
     pub terms: Vec<(usize, i64)>,
-    /// The number of the constant among the [`turns`](Program::turns) of the function, and whether it is taken away.
+    /// The index of the constant among the [`turns`](Program::turns) of the function, and whether it is subtracted.
     pub turn: Option<(usize, bool)>,
 }
 
 /// A literal in the text: digits without a sign.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Literal {
-    /// Its digits as they stand.
+    /// Its digits in the text.
     pub text: String,
-    /// What they read as in the module's scalar.
+    /// Its value in the module's scalar.
     pub value: f64,
 }
 
-/// An entry of a result: where it stands and which step it is.
+/// An entry of a result: its place and its step.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Output {
-    /// `[0][1]`, `.inertia[0][1]`, or nothing for a scalar.
+    /// `[0][1]`, `.inertia[0][1]`, or empty for a scalar.
     pub place: String,
     /// The step.
     pub step: usize,
@@ -163,47 +163,47 @@ pub trait Inputs<E> {
     fn sign(&self, joint: usize) -> E;
     /// exp(-|dq| / velocity) of a joint rate.
     fn stribeck(&self, joint: usize, velocity: &E) -> E;
-    /// Sine and cosine of such a combination and a constant.
+    /// Sine and cosine of an integer combination plus a constant.
     fn turned(&self, angle: &[(usize, i64)], turn: &Turn<'_, E>) -> (E, E);
 }
 
 /// The constant of an angle.
 #[derive(Clone, Copy, Debug)]
 pub struct Turn<'a, E> {
-    /// Whether it is taken away.
+    /// Whether it is subtracted.
     pub minus: bool,
-    /// What its literal stands for.
+    /// The value of its literal.
     pub value: &'a E,
-    /// Sine and cosine of the constant, where they are known.
+    /// Sine and cosine of the constant, if known.
     pub circle: Option<(&'a E, &'a E)>,
 }
 
-/// Sine and cosine of a turned angle from those of the angle, by the addition theorem.
+/// Sine and cosine of an angle plus a constant by the addition theorem, from those of the angle.
 ///
 /// # Panics
-/// If the circle of the constant is not known: exact literals are those of [`Program::exact_literals`].
+/// If sine and cosine of the constant are unknown; [`Program::exact_literals`] provides them.
 pub fn by_addition<E: Element>((sine, cosine): (E, E), turn: &Turn<'_, E>) -> (E, E) {
     let (s, c) = turn.circle.expect("exact literals come with the circles of turns");
     let s = if turn.minus { s.negated() } else { s.clone() };
     (sine.times(c).plus(&cosine.times(&s)), cosine.times(c).minus(&sine.times(&s)))
 }
 
-/// Bits of one exact value at most.
+/// Maximum number of bits of an exact value.
 const MOST_BITS: usize = 1 << 20;
-/// What the exact values of a function may cost, in products of words: the squares of their lengths, as common divisors of fractions do.
+/// Cost limit for the exact values of a function, in products of words: squares of lengths, the cost of common divisors of fractions.
 const MOST_WORK: u64 = 1 << 32;
-/// The same beside entries of a known length; as many steps with values of four times that may be added, and as many for each entry: the derivatives
-/// of the forward dynamics of 32 joints take 76 steps for an entry, nearly all of them long.
+/// The same for entries of a known length. In addition, a number of steps with values of four times that length, and a number per entry, are
+/// allowed: the derivatives of the forward dynamics of 32 joints take 76 steps per entry, nearly all of them long.
 const MOST_WORK_BESIDE: u64 = 1 << 28;
 const LONG_STEPS: u64 = 1 << 12;
 const LONG_STEPS_OF_AN_ENTRY: u64 = 1 << 6;
 
-/// How long exact values may be.
+/// Limits on the length of exact values.
 #[derive(Clone, Copy, Debug)]
 pub struct Limits {
-    /// Bits of one.
+    /// Maximum number of bits of a value.
     bits: usize,
-    /// Products of words for all.
+    /// Maximum total cost in products of words.
     work: u64,
 }
 
@@ -214,8 +214,8 @@ impl Default for Limits {
 }
 
 impl Limits {
-    /// Where that many entries are known to have so many bits: values on the way to them are some times as long, an acceleration under five roots
-    /// can have a million bits itself.
+    /// The limits for this number of entries with at most `longest` bits. Intermediate values are several times as long; an acceleration with five
+    /// roots can itself have a million bits.
     pub fn beside(longest: usize, entries: usize) -> Limits {
         let long = 4 * longest;
         let steps = LONG_STEPS + LONG_STEPS_OF_AN_ENTRY * entries as u64;
@@ -226,7 +226,7 @@ impl Limits {
     }
 }
 
-/// The square of the words that so many bits take.
+/// The square of the number of words for this number of bits.
 fn squared_words(bits: u64) -> u64 {
     (bits / 64 + 1).saturating_pow(2)
 }
@@ -237,15 +237,15 @@ impl Program {
         self.run_within(Limits::default(), inputs, literals)
     }
 
-    /// The same within other limits.
+    /// The same with other limits.
     pub fn run_within<E: Element>(&self, limits: Limits, inputs: &impl Inputs<E>, literals: &[E]) -> Vec<Option<E>> {
-        // What owns memory is given back as soon as nothing needs it any more.
+        // Values with heap memory are dropped after their last use.
         let last = std::mem::needs_drop::<E>().then(|| self.last_uses());
         let values = self.execute(inputs, literals, last.as_deref(), limits);
         self.outputs.iter().map(|output| values[output.step].clone()).collect()
     }
 
-    /// For each step the last one that takes it as an operand, on the way to an entry; none is behind an entry, and one that no entry needs is its own.
+    /// For each step the last step that uses it on the way to an entry. The value is `usize::MAX` for an entry, and the step itself if it is unused.
     fn last_uses(&self) -> Vec<usize> {
         let mut last: Vec<usize> = (0..self.steps.len()).collect();
         let needed = self.needed(&self.outputs.iter().map(|output| output.step).collect::<Vec<usize>>());
@@ -256,7 +256,7 @@ impl Program {
         last
     }
 
-    /// The exact values of the literals, followed by sine and cosine of each that is the constant of an angle: what exact runs take.
+    /// The exact values of the literals, then sine and cosine of each constant of an angle, as exact runs need them.
     pub fn exact_literals(&self, values: &[Formula]) -> Vec<Formula> {
         let circles = self.turns.iter().flat_map(|&literal| {
             let (sine, cosine) = values[literal].circle();
@@ -265,7 +265,7 @@ impl Program {
         values.iter().cloned().chain(circles).collect()
     }
 
-    /// The factors of a step that is a product without a rounding.
+    /// The factors of a product without rounding.
     pub fn factors(&self, step: usize) -> Option<(usize, usize)> {
         match self.steps[step] {
             Step::Product(a, b) => Some((a, b)),
@@ -273,7 +273,7 @@ impl Program {
         }
     }
 
-    /// The part of the program that some steps need: these are its results.
+    /// The subprogram that computes some steps, which become its results.
     pub fn part(&self, results: &[usize]) -> Program {
         let needed = self.needed(results);
         let mut number = vec![0; self.steps.len()];
@@ -295,7 +295,7 @@ impl Program {
         Program { steps, outputs, ..self.clone() }
     }
 
-    /// Which steps some of them need, themselves included.
+    /// Which steps some steps need, themselves included.
     pub fn needed(&self, results: &[usize]) -> Vec<bool> {
         let mut needed = vec![false; self.steps.len()];
         results.iter().for_each(|&step| needed[step] = true);
@@ -307,13 +307,13 @@ impl Program {
         needed
     }
 
-    /// The value of every step; `None` of what divides by zero, and of all from where numbers have grown out of bounds: 2^20 bits for one,
-    /// 2^32 products of words for all.
+    /// The value of every step. `None` for a division by zero, and for all steps after numbers have exceeded the limits: 2^20 bits for a value, 2^32
+    /// products of words in total.
     pub fn values<E: Element>(&self, inputs: &impl Inputs<E>, literals: &[E]) -> Vec<Option<E>> {
         self.execute(inputs, literals, None, Limits::default())
     }
 
-    /// The same, without the values of steps behind their last uses.
+    /// The same, dropping values after their last uses.
     fn execute<E: Element>(
         &self,
         inputs: &impl Inputs<E>,
@@ -370,7 +370,7 @@ impl Program {
         values
     }
 
-    /// Why an entry has no value: it divides by 0, or numbers have grown out of bounds.
+    /// The reason why an entry has no value: a division by 0, or numbers beyond the limits.
     pub fn without_value<E: Element>(&self, inputs: &impl Inputs<E>, literals: &[E]) -> &'static str {
         let values = self.values(inputs, literals);
         let zero = |step: &usize| values[*step].as_ref().is_some_and(Element::is_zero);
@@ -381,7 +381,7 @@ impl Program {
         }
     }
 
-    /// The entries that a literal takes part in.
+    /// The entries that depend on a literal.
     pub fn entries_with(&self, literal: usize) -> impl Iterator<Item = usize> + '_ {
         let mut touched = vec![false; self.steps.len()];
         for (i, step) in self.steps.iter().enumerate() {
@@ -405,7 +405,7 @@ mod tests {
 
     #[test]
     fn long_arms_stay_within_the_limits() {
-        // The derivatives of the forward dynamics of a chain of 32 joints at a rational point: 3072 entries of 8048 bits by 232 986 steps.
+        // The derivatives of the forward dynamics of a chain of 32 joints at a rational point: 3072 entries of 8048 bits in 232 986 steps.
         let work = 232_986 * squared_words(3 * 8192);
         assert!(Limits::beside(8048, 3072).work > work, "{work}");
         assert!(Limits::beside(200, 16).work < 2 * MOST_WORK_BESIDE);

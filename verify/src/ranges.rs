@@ -1,4 +1,4 @@
-//! Intervals and errors of all steps of a program over a box of arguments.
+//! Intervals and error bounds of all steps of a program over a box of arguments.
 
 use crate::enclosure::Float;
 use crate::float::Arguments;
@@ -11,14 +11,14 @@ pub fn is_power_of_two(value: f64) -> bool {
     value != 0.0 && mantissa == 0 && (1e-6..1e6).contains(&value.abs())
 }
 
-/// How far the literals of a program are from the exact values they stand for: 0 where the float is exact.
+/// The distances of a program's literals from their exact values; 0 for exact floats.
 pub fn literal_errors(program: &Program, values: &[Formula], real: Float) -> Vec<f64> {
     let error = |(literal, exact): (&Literal, &Formula)| {
         let same = exact.as_rational().is_some_and(|e| Rational::try_from(literal.value).is_ok_and(|f| f == *e));
         if same {
             0.0
         } else if literal.value.abs() < real.smallest_normal() {
-            // Below the normal numbers a literal may have lost all its digits.
+            // A subnormal literal may have lost all its digits.
             real.smallest()
         } else {
             real.unit() * literal.value.abs()
@@ -30,12 +30,12 @@ pub fn literal_errors(program: &Program, values: &[Formula], real: Float) -> Vec
 /// Lowest and highest value of each argument's entries.
 pub type Domain = Arguments<(f64, f64)>;
 
-/// The largest of some sizes, at least 0; no number if one of them is none.
+/// The largest of some sizes, at least 0; NaN if any is NaN.
 pub fn worst(sizes: impl IntoIterator<Item = f64>) -> f64 {
     sizes.into_iter().fold(0.0, |most, size| if size > most || size.is_nan() { size } else { most })
 }
 
-/// An interval around the exact value, and how far the computed one can be from it.
+/// An interval around the exact value, and an error bound of the computed value.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Range {
     /// Its lower end.
@@ -46,7 +46,7 @@ pub struct Range {
     pub error: f64,
 }
 
-/// A little more, for the roundings of the bounds themselves.
+/// Margin for the rounding errors of the bounds themselves.
 const OUTWARD: f64 = 1.0 + 1e-14;
 
 impl Range {
@@ -54,17 +54,17 @@ impl Range {
         Range { low, high, error: 0.0 }
     }
 
-    /// exp(-|rate| / velocity) of the rates of an interval, as a float.
+    /// exp(-|rate| / velocity) over an interval of rates, in floats.
     pub(crate) fn stribeck((low, high): (f64, f64), velocity: f64, real: Float) -> Range {
         let most = low.abs().max(high.abs());
         let least = if low <= 0.0 && high >= 0.0 { 0.0 } else { low.abs().min(high.abs()) };
         let at = |rate: f64| libm::exp(-rate / velocity);
-        // Two units of the function itself, and two of |rate| / velocity, which weigh no more than x exp(-x) <= 0.37. Below 1e-17 it is 0.
+        // Two units for the function, and two of |rate| / velocity, multiplied by at most x exp(-x) <= 0.37. Values below 1e-17 become 0.
         Range::of(&[at(most) - 1e-15, at(least)], 4.0 * real.unit() + 1e-17)
     }
 
-    /// The sign of a value that is known to so much: of one that can be 0 it is as wrong as the value is beside its size, since where the value is as
-    /// small as its error, its sign can be any, which no bound over a box counts.
+    /// The sign of a value in this range. If the value can be 0, the sign has the relative error of the value: near zero, where the value is as small
+    /// as its error, the sign is arbitrary, and no bound over a box covers that.
     pub(crate) fn sign(&self) -> Range {
         let size = self.size();
         if self.low > self.error {
@@ -79,10 +79,10 @@ impl Range {
         }
     }
 
-    /// No bound at all.
+    /// The unbounded range.
     pub(crate) const ANYTHING: Range = Range { low: f64::NEG_INFINITY, high: f64::INFINITY, error: f64::INFINITY };
 
-    /// The range, if no value of it and none that can be computed for it leaves the scalar.
+    /// The range, if neither exact nor computed values leave the scalar.
     fn within(self, real: Float) -> Range {
         if self.size() + self.error <= real.largest() {
             self
@@ -91,7 +91,7 @@ impl Range {
         }
     }
 
-    /// Around some values, widened by what rounding can do to them.
+    /// The range of some values, widened by possible rounding errors.
     pub(crate) fn of(ends: &[f64], error: f64) -> Range {
         if ends.iter().any(|end| end.is_nan()) {
             return Range::ANYTHING;
@@ -102,24 +102,24 @@ impl Range {
         Range { low: widen(low, -1.0), high: widen(high, 1.0), error: error * OUTWARD }
     }
 
-    /// The largest size of a value.
+    /// The maximum absolute value.
     pub fn size(&self) -> f64 {
         self.low.abs().max(self.high.abs())
     }
 }
 
-/// Angles beyond this may be any.
+/// Sine and cosine are unrestricted beyond this angle.
 const FARTHEST: f64 = 1e6;
 
-/// The range of sine (or cosine, a quarter turn on) over an interval.
+/// The range of the sine of an interval shifted by `shift` (a quarter turn for the cosine).
 fn wave(low: f64, high: f64, shift: f64) -> (f64, f64) {
     use std::f64::consts::{FRAC_PI_2, PI};
     let (a, b) = (low + shift, high + shift);
-    // So far out additions round by more than the slack below.
+    // Beyond it, additions round by more than the margin below.
     if !(a.abs() <= FARTHEST && b.abs() <= FARTHEST) {
         return (-1.0, 1.0);
     }
-    // Whether a quarter turn plus k turns lies in the interval, with some slack.
+    // Whether the interval contains `peak` plus whole turns, with a margin.
     let contains = |peak: f64| ((a - peak - 1e-9) / (2.0 * PI)).ceil() * 2.0 * PI + peak <= b + 1e-9;
     let ends = [a.sin(), b.sin()];
     let low = if contains(-FRAC_PI_2) { -1.0 } else { ends[0].min(ends[1]) - 1e-9 };
@@ -127,7 +127,7 @@ fn wave(low: f64, high: f64, shift: f64) -> (f64, f64) {
     (low.max(-1.0), high.min(1.0))
 }
 
-/// Values and errors of all steps of a program over a domain; `errors` are those of its literals, no divisor is below `smallest`.
+/// Values and errors of all steps of a program over a domain; `errors` are those of the literals, and no divisor is below `smallest`.
 pub fn ranges(program: &Program, errors: &[f64], domain: &Domain, smallest: Option<f64>, real: Float) -> Vec<Range> {
     let evaluation = Evaluation { program, errors, domain, smallest, real };
     let mut ranges: Vec<Range> = Vec::with_capacity(program.steps.len());
@@ -137,19 +137,19 @@ pub fn ranges(program: &Program, errors: &[f64], domain: &Domain, smallest: Opti
     ranges
 }
 
-/// A program over a domain.
+/// The evaluation of a program over a domain.
 struct Evaluation<'a> {
     program: &'a Program,
-    /// Of its literals.
+    /// Errors of its literals.
     errors: &'a [f64],
     domain: &'a Domain,
-    /// No divisor is below.
+    /// Lower bound of all divisors.
     smallest: Option<f64>,
     real: Float,
 }
 
 impl Evaluation<'_> {
-    /// The sine of an angle, `shift` ahead, with the rounding of the angle's sum.
+    /// The sine of an angle plus `shift`, including the rounding of the angle's sum.
     fn sine(&self, angle: &Angle, shift: f64) -> Range {
         let (u, terms, q) = (self.real.unit(), &angle.terms, &self.domain.q);
         let (mut low, mut high) = (0.0, 0.0);
@@ -172,12 +172,12 @@ impl Evaluation<'_> {
         Range::of(&[low, high], 2.0 * u * low.abs().max(high.abs()) + slack + self.real.smallest_normal())
     }
 
-    /// The rounding of a step, whose operands bring in `carried`.
+    /// The range of a step with the error `carried` from its operands, plus the rounding.
     fn rounded(&self, ends: &[f64], carried: f64) -> Range {
         Range::of(ends, carried + self.real.unit() * (largest(ends) + carried))
     }
 
-    /// A step from those before it.
+    /// The range of a step from earlier ranges.
     fn step(&self, step: &Step, ranges: &[Range]) -> Range {
         let of = |i: &usize| ranges[*i];
         match step {
@@ -205,7 +205,7 @@ impl Evaluation<'_> {
             }
             Step::Add(x, y) => {
                 let (a, b) = (of(x), of(y));
-                // A fused product may be below the normal numbers, where a sum of floats would be exact.
+                // A fused product may be subnormal, although a sum of floats would be exact there.
                 let lost = if self.program.factors(*x).is_some() { self.real.smallest_normal() } else { 0.0 };
                 self.rounded(&[a.low + b.low, a.high + b.high], a.error + b.error + lost)
             }
@@ -226,11 +226,11 @@ impl Evaluation<'_> {
         matches!(self.program.steps[step], Step::Literal(l) if self.errors[l] == 0.0 && is_power_of_two(self.program.literals[l].value))
     }
 
-    /// Of two steps by their numbers and ranges.
+    /// The product of two steps, given by number and range.
     fn product(&self, (x, a): (usize, Range), (y, b): (usize, Range)) -> Range {
         let (ends, carried) = products((x, a), (y, b));
         if self.is_power_of_two(x) || self.is_power_of_two(y) {
-            // A product with ½ or less of what is hardly normal loses digits.
+            // A product of ½ or less with a barely normal value loses digits.
             let factor = if self.is_power_of_two(x) { a.size() } else { b.size() };
             Range::of(&ends, carried + if factor < 1.0 { self.real.smallest() } else { 0.0 })
         } else {
@@ -240,7 +240,7 @@ impl Evaluation<'_> {
 
     fn quotient(&self, a: Range, mut b: Range) -> Range {
         let least = self.smallest.unwrap_or(0.0);
-        // All divisors are positive or all negative: pivots of B keep their sign.
+        // All divisors are positive or all negative, because pivots of B keep their sign.
         if b.high >= -b.low {
             b.low = b.low.max(least);
         } else {
@@ -256,7 +256,7 @@ impl Evaluation<'_> {
     }
 }
 
-/// The products of the ends of two steps, and what their errors bring in.
+/// The products of the interval ends of two steps, and their propagated error.
 fn products((x, a): (usize, Range), (y, b): (usize, Range)) -> ([f64; 4], f64) {
     let carried = a.size() * b.error + b.size() * a.error + a.error * b.error;
     let mut ends = [a.low * b.low, a.low * b.high, a.high * b.low, a.high * b.high];

@@ -1,9 +1,9 @@
-//! Reads an emitted module back: constants as values, functions as straight-line programs.
+//! Reads an emitted module: constants as values, functions as straight-line programs.
 //!
-//! The reader accepts a grammar and nothing else, with a lexer and a parser of its own: what it does not know it cannot skip. All but the bodies of
-//! functions is compared, token by token, with the texts that an emitted module has (`items`, `sines`, signatures from
-//! [`contract`](crate::contract)); bodies have the grammar of `body`, constants that of their types (`constant`), documentation that of
-//! `documentation`, and all text the characters of `lexer`. `docs/certificate.md` has the whole.
+//! The reader accepts only a fixed grammar, with its own lexer and parser; it cannot skip unknown text. Except for the bodies of functions, it
+//! compares all tokens with the texts of an emitted module (`items`, `sines`, signatures from [`contract`](crate::contract)). The grammar of
+//! bodies is in `body`, of constants in `constant`, of documentation in `documentation`, and of characters in `lexer`.
+//! `docs/certificate.md` has the complete grammar.
 
 mod body;
 mod c;
@@ -35,19 +35,19 @@ pub use lexer::Fault;
 pub(crate) use lexer::{is_hidden, name_of};
 pub(crate) use plain::camel;
 
-/// The longest text that is read, in bytes; that of a chain of 32 joints has a third of it.
+/// The maximum length of a module, in bytes; that of a chain of 32 joints takes a third.
 pub const LONGEST: usize = 32 << 20;
 
-/// How a line begins that states a fact of a function.
+/// Prefixes of the lines that state a fact about a function.
 pub(crate) const FACTS: [&str; 2] = ["Cost: ", "Rounding error: "];
 
-/// Whether a line of a comment states a fact of a function.
+/// Whether a line of a comment states a fact about a function.
 pub(crate) fn is_fact(line: &str) -> bool {
     let words = line.trim_start_matches([' ', '/', '*', '%', '#']);
     FACTS.iter().any(|fact| words.starts_with(fact))
 }
 
-/// The text of a module and the language that it is in; a mere text is in Rust.
+/// The text of a module with its language; plain text is Rust.
 #[derive(Clone, Copy, Debug)]
 pub struct ModuleText<'a> {
     /// The language.
@@ -68,22 +68,22 @@ impl<'a> From<&'a String> for ModuleText<'a> {
     }
 }
 
-/// What was read.
+/// The content of a module.
 #[derive(Clone, Debug)]
 pub struct Module {
     /// The language.
     pub language: Language,
     /// The scalar behind `Real`.
     pub real: Float,
-    /// Where sines and cosines come from, if any are asked for: `libm`, `std` or `fast`.
+    /// The source of sines and cosines, if any are used: `libm`, `std` or `fast`.
     pub trig: Option<&'static str>,
-    /// Comments in front of all items, without the slashes.
+    /// Comments before all items, without the slashes.
     pub head: Vec<String>,
-    /// Lines of the text that state the cost or the rounding error of a function.
+    /// Number of lines that state the cost or the rounding error of a function.
     pub facts: usize,
     /// Constants by name.
     pub constants: BTreeMap<String, Constant>,
-    /// Public functions in the order of the text, or what is wrong with each.
+    /// Public functions in the order of the text, each with its content or fault.
     pub functions: Vec<(String, Result<Function, String>)>,
 }
 
@@ -92,12 +92,12 @@ pub struct Module {
 pub struct Function {
     /// Its documentation, line by line, without the slashes.
     pub documentation: Vec<String>,
-    /// What it does.
+    /// Its computation.
     pub program: Program,
 }
 
 impl Module {
-    /// Reads the text of a module. In Rust, what is wrong with the body of one function is said in its place.
+    /// Reads the text of a module. In Rust, a fault in a function's body becomes part of the result.
     pub fn read<'a>(text: impl Into<ModuleText<'a>>) -> Result<Module, Fault> {
         let ModuleText { language, text } = text.into();
         let module = match language {
@@ -110,7 +110,7 @@ impl Module {
         Ok(Module { facts: text.lines().filter(|line| is_fact(line)).count(), ..module })
     }
 
-    /// Nothing, with floats of 64 bits.
+    /// An empty module with 64-bit floats.
     fn empty(language: Language) -> Module {
         Module {
             language,
@@ -144,7 +144,7 @@ impl Module {
         let shared =
             Shared { real, parts: &items.parts, written: &items.written, fast: trig == Some("fast"), steps: AtomicUsize::new(0) };
         let compiled = parallel_map(&items.public, |function| body::compile(function, &shared));
-        // Which function was too much would depend on the threads.
+        // The order of the threads decides which function exceeds the limit, so the fault names no function.
         if shared.is_too_long() {
             return Err(Fault { line: 1, reason: Shared::too_long() });
         }
@@ -159,7 +159,7 @@ impl Module {
             });
             functions.push((function.name.to_string(), read.map_err(String::from)));
         }
-        // What the others call is not known.
+        // The calls of faulty functions are unknown.
         if functions.iter().all(|(_, function)| function.is_ok()) {
             sines::check_calls(&items.private, &calls, real)?;
             let unneeded = items.parts.iter().find(|(name, _)| !parts_called.contains(*name));
@@ -171,7 +171,7 @@ impl Module {
         Ok(Module { real, trig, head, constants, functions, ..Module::empty(Language::Rust) })
     }
 
-    /// The sizes that its constants state.
+    /// The sizes in its constants.
     pub fn sizes(&self) -> Sizes {
         let of = |name: &str| match self.constants.get(name) {
             Some(Constant::Integer(value)) => *value as usize,
@@ -180,12 +180,12 @@ impl Module {
         Sizes { n: of("DOF"), p: of("PARAMETERS"), b: of("BASE_PARAMETERS"), m: of("TASK_ROWS") }
     }
 
-    /// The programs of all functions that could be read, by name.
+    /// The programs of all readable functions, by name.
     pub fn programs(&self) -> impl Iterator<Item = (&str, &Program)> {
         self.functions.iter().filter_map(|(name, function)| Some((name.as_str(), &function.as_ref().ok()?.program)))
     }
 
-    /// A function's program, if it could be read.
+    /// The program of a function, if it is readable.
     pub fn program(&self, name: &str) -> Option<&Program> {
         self.functions.iter().find(|(n, _)| n == name)?.1.as_ref().ok().map(|f| &f.program)
     }

@@ -1,4 +1,4 @@
-//! The functions that the checker knows: what each takes and returns, and what it must return at one random state, from the equations.
+//! The functions known to the checker: their arguments and results, and their values at a random state, from the equations.
 
 use std::collections::BTreeMap;
 
@@ -22,7 +22,7 @@ use crate::equations::pose::Pose;
 use crate::equations::state::State;
 use crate::equations::vector::{solve, Vector as Vector3};
 
-/// The function that is not compared entry by entry: its columns are those of the parameters that the module itself names.
+/// The function without an entry-by-entry comparison: its columns belong to the parameters that the module itself names.
 pub const BASE_REGRESSOR: &str = "base_regressor";
 
 const N: Length = Length::Dof;
@@ -40,13 +40,13 @@ impl Promise {
         Promise { parameters: true, ..self }
     }
 
-    /// An arm may lack it.
+    /// Marks a function that an arm may lack.
     const fn not_of_every_arm(self) -> Promise {
         Promise { required: false, ..self }
     }
 }
 
-/// All functions that the checker knows. Written apart from the generator's catalogue; a test compares the two.
+/// All functions known to the checker, independent of the generator's catalogue; a test compares the two.
 pub const PROMISES: [Promise; 24] = [
     promise("direct_kinematics", &["q"], Returned::One(FRAME)),
     promise("link_frames", &["q"], Returned::One(&[N, Length::Of(4), Length::Of(4)])),
@@ -80,19 +80,19 @@ pub const PROMISES: [Promise; 24] = [
 ];
 
 impl Promise {
-    /// The promise of a function's name, and whether it is the form with parameters.
+    /// The promise for a function name, and whether the name is the form with parameters.
     pub fn of(name: &str) -> Option<(&'static Promise, bool)> {
         let plain = PROMISES.iter().find(|p| p.name == name).map(|p| (p, false));
         let base = name.strip_suffix("_with");
         plain.or_else(|| PROMISES.iter().find(|p| p.parameters && Some(p.name) == base).map(|p| (p, true)))
     }
 
-    /// Names of all functions that every module must have.
+    /// Names of the functions that every module must have.
     pub fn required() -> Vec<String> {
         PROMISES.iter().filter(|promise| promise.required).flat_map(Promise::names).collect()
     }
 
-    /// Names of those that an arm may lack.
+    /// Names of the functions that an arm may lack.
     pub fn optional() -> impl Iterator<Item = String> {
         PROMISES.iter().filter(|promise| !promise.required).flat_map(Promise::names)
     }
@@ -106,24 +106,24 @@ impl Promise {
 /// Values of all functions by name.
 pub type Values<E> = BTreeMap<String, Vec<E>>;
 
-/// A random state, what each function must return there, and what belongs to base parameters.
+/// A random state with the required values of each function there, and the data for base parameters.
 #[derive(Clone, Debug)]
 pub struct Reference<E> {
-    /// The state, its parameter vector random.
+    /// The state, with a random parameter vector.
     pub state: State<E>,
     /// Values by function.
     pub values: Values<E>,
-    /// Another configuration with the same parameters, and the potential energy there: with base parameters U is defined up to a constant.
+    /// Another configuration with the same parameters, and its potential energy; with base parameters U is only defined up to a constant.
     pub elsewhere: Option<(State<E>, E)>,
-    /// The nominal parameter vector where it follows from the bodies: of standard and of base parameters.
+    /// The nominal parameter vector, if it follows from the bodies: for standard and for base parameters.
     pub nominal: Option<Vec<E>>,
-    /// Whether Lagrange's and Newton and Euler's torques agree.
+    /// Whether the torques by Lagrange and by Newton and Euler agree.
     pub two_derivations_agree: bool,
-    /// What may be divided by, if that is wanted: at the state, and at another one with other parameters.
+    /// The permitted divisors, if wanted: at the state, and at another state with other parameters.
     pub pivots: Option<(Pivots<E>, State<E>, Pivots<E>)>,
 }
 
-/// The quantities of an arm; whether its torques after Newton and Euler are the same.
+/// Computes the quantities of an arm; returns whether its torques by Newton and Euler agree.
 fn quantities<E: Element>(arm: &Arm<E>, state: &State<E>, values: &mut Values<E>, suffix: &str) -> Option<bool> {
     let parts = Parts {
         b: inertia_matrix(arm, state),
@@ -140,7 +140,7 @@ fn quantities<E: Element>(arm: &Arm<E>, state: &State<E>, values: &mut Values<E>
     Some(torques == without_friction)
 }
 
-/// The quantities that follow from these parts; the torques without friction.
+/// The quantities that follow from these parts, with torques without friction.
 fn of_parts<E: Element>(arm: &Arm<E>, state: &State<E>, parts: Parts<E>, values: &mut Values<E>, suffix: &str) -> Option<Vec<E>> {
     let mut put = |name: &str, value: Vec<E>| values.insert(format!("{name}{suffix}"), value);
     let (half, Parts { b, c, g, f, u }) = (arm.half(), parts);
@@ -182,7 +182,7 @@ fn mass<E: Element>(arm: &Arm<E>) -> E {
     links.chain(rotors).chain(load).fold(arm.zero.clone(), |sum, mass| sum.plus(mass))
 }
 
-/// Σ m p / Σ m: the sum on top is -U where free fall is along an axis at 1. None where there is no mass.
+/// Σ m p / Σ m: the numerator is -U for unit gravity along an axis. `None` without mass.
 fn center_of_mass<E: Element>(arm: &Arm<E>, state: &State<E>) -> Option<Vec<E>> {
     let total = mass(arm);
     let along = |axis: usize| {
@@ -194,14 +194,14 @@ fn center_of_mass<E: Element>(arm: &Arm<E>, state: &State<E>) -> Option<Vec<E>> 
     (0..3).map(along).collect()
 }
 
-/// What torques are derived by.
+/// The variable of a torque derivative.
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum By {
     Variables,
     Rates,
 }
 
-/// ∂τ/∂q or ∂τ/∂q̇ row by row, by dual numbers through Newton and Euler.
+/// ∂τ/∂q or ∂τ/∂q̇ row by row, by dual numbers through the Newton-Euler method.
 fn torque_derivatives<E: Element>(arm: &Arm<E>, state: &State<E>, by: By) -> Vec<Vec<E>> {
     let n = arm.dof();
     let moving_arm = arm.map(&|e| Dual::constant(e));
@@ -230,7 +230,7 @@ fn identity<E: Element>(arm: &Arm<E>, n: usize) -> Vec<Vec<E>> {
     (0..n).map(|i| (0..n).map(|j| if i == j { arm.one.clone() } else { arm.zero.clone() }).collect()).collect()
 }
 
-/// J B^-1 J' for rows of the geometric Jacobian.
+/// J B^-1 J' for these rows of the geometric Jacobian.
 fn mobility<E: Element>(jacobian: &[E], inverse: &[Vec<E>], task: &[usize]) -> Vec<Vec<E>> {
     let n = inverse.len();
     let rows: Vec<&[E]> = task.iter().map(|&row| &jacobian[row * n..(row + 1) * n]).collect();
@@ -240,7 +240,7 @@ fn mobility<E: Element>(jacobian: &[E], inverse: &[Vec<E>], task: &[usize]) -> V
     rows.iter().map(half_way).map(|along| rows.iter().map(|row| dot(&along, row)).collect()).collect()
 }
 
-/// The pivots that functions may divide by, at a state.
+/// The permitted divisors at a state, as pivots.
 fn pivots<E: Element>(arm: &Arm<E>, run_time: Option<&Arm<E>>, state: &State<E>, task: &[usize]) -> Pivots<E> {
     let b = inertia_matrix(arm, state);
     let of_task = solve(&b, &identity(arm, arm.dof())).map(|inverse| {
@@ -253,7 +253,7 @@ fn pivots<E: Element>(arm: &Arm<E>, run_time: Option<&Arm<E>>, state: &State<E>,
     Pivots::of([Some((Matrix::Inertia, b)), with, of_task, mass, mass_with].into_iter().flatten().collect())
 }
 
-/// The derivatives of the dynamics, and the inertia in the rows of the task where the arm moves these independently.
+/// The derivatives of the dynamics, and the inertia in the task rows if the arm moves these independently.
 fn derivatives_and_task<E: Element>(arm: &Arm<E>, state: &State<E>, task: &[usize], values: &mut Values<E>) -> Option<()> {
     let n = arm.dof();
     let b = inertia_matrix(arm, state);
@@ -275,7 +275,7 @@ fn derivatives_and_task<E: Element>(arm: &Arm<E>, state: &State<E>, task: &[usiz
     values.insert("inverse_dynamics_derivatives".into(), [by_q.concat(), by_dq.concat()].concat());
     let mut accelerated = state.clone();
     accelerated.ddq.clone_from(&values["forward_dynamics"]);
-    // B ddq knows no rates: by these the torques are derived as before.
+    // B ddq does not depend on rates, so the derivatives by rates are those from above.
     let by_q = torque_derivatives(arm, &accelerated, By::Variables);
     let negative: Vec<Vec<E>> = inverse.iter().map(|row| row.iter().map(Element::negated).collect()).collect();
     let by_q = product(&negative, &|k, j| by_q[k][j].clone(), n);
@@ -304,31 +304,31 @@ fn kinematics<E: Element>(arm: &Arm<E>, state: &State<E>, values: &mut Values<E>
     values.insert("geometric_jacobian_dot".into(), rates.collect());
 }
 
-/// Which of the equations a reference is wanted for.
+/// The wanted parts of a reference.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Wanted {
-    /// How the functions at run-time base parameters are had.
+    /// The method for functions with run-time base parameters.
     pub base: BaseParameters,
-    /// The pivots that functions may divide by.
+    /// Whether to compute the permitted divisors.
     pub pivots: bool,
 }
 
-/// Base parameters follow from the standard ones by a matrix that is the solution of a system of equations. To those that they are named after
-/// it is the identity: an arm in which the others are 0 has its standard parameters for base parameters.
+/// Base parameters follow from the standard ones by a matrix, the solution of a system of equations. It is the identity on the standard
+/// parameters in their names: an arm whose other parameters are 0 has its standard parameters as base parameters.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum BaseParameters {
-    /// Solved for.
+    /// From the solved matrix.
     Solved,
-    /// Taken to be independent of the standard ones: right for bounds on degrees.
+    /// Independent of the standard ones; suitable for bounds on degrees.
     Free,
     /// The standard parameters of an arm whose others are 0.
     Kept,
-    /// Left out.
+    /// Omitted.
     LeftOut,
 }
 
 impl<E: Element> Reference<E> {
-    /// At a random state of an arithmetic.
+    /// The reference at a random state of an arithmetic.
     pub fn new<K: Arithmetic<Element = E>>(
         arithmetic: &mut K,
         manipulator: &Manipulator,
@@ -340,7 +340,7 @@ impl<E: Element> Reference<E> {
         Reference::at(arithmetic, manipulator, vector, state, wanted)
     }
 
-    /// At a state; its parameter vector is drawn where it is empty.
+    /// The reference at a state; draws an empty parameter vector.
     pub fn at<K: Arithmetic<Element = E>>(
         arithmetic: &mut K,
         manipulator: &Manipulator,
@@ -355,7 +355,7 @@ impl<E: Element> Reference<E> {
         let mut values = Values::new();
         kinematics(&arm, &state, &mut values);
         if manipulator.is_massless() {
-            // Accelerations are not defined: no equations but those of kinematics.
+            // Without accelerations, only the equations of kinematics apply.
             let none = || Pivots::of(Vec::new());
             let pivots = wanted.pivots.then(|| (none(), State::draw(arithmetic, n), none()));
             return Ok(Reference { state, values, elsewhere: None, nominal: None, two_derivations_agree: true, pivots });
@@ -376,7 +376,7 @@ impl<E: Element> Reference<E> {
             agree &= quantities(arm, &state, &mut values, "_with").ok_or_else(singular)?;
         }
         if matches!(vector, Vector::Base(..)) {
-            // The whole mass does not follow from base parameters.
+            // The total mass does not follow from base parameters.
             values.remove("center_of_mass_with");
         }
         let pivots = wanted.pivots.then(|| {
@@ -397,19 +397,19 @@ fn singular() -> String {
     "the inertia matrix is singular at a random state".into()
 }
 
-/// The torques of the four-argument form as they depend on a parameter vector, and what else belongs to the vector.
+/// The torques of the four-argument form as a function of a parameter vector, with further data of the vector.
 struct Linear<E> {
     /// Columns of the regressor.
     columns: Vec<Vec<E>>,
-    /// What no parameter enters.
+    /// The torque without any parameter.
     known: Vec<E>,
     /// The arm with the parameters of the state.
     run_time: Option<Arm<E>>,
-    /// The arm with other parameters, where pivots are wanted.
+    /// The arm with other parameters, if pivots are wanted.
     other: Option<(Arm<E>, Vec<E>)>,
-    /// The values of the description.
+    /// The nominal values.
     nominal: Option<Vec<E>>,
-    /// Another configuration with the same parameters, and the potential energy there.
+    /// Another configuration with the same parameters, and its potential energy.
     elsewhere: Option<(State<E>, E)>,
 }
 
@@ -417,7 +417,7 @@ fn draws<K: Arithmetic>(arithmetic: &mut K, count: usize) -> Vec<K::Element> {
     (0..count).map(|_| arithmetic.draw()).collect()
 }
 
-/// Named quantities of the description: columns are differences, since the torques are affine in them.
+/// Named quantities of the description: columns are differences, because the torques are affine in them.
 fn of_names<E: Element, K: Arithmetic<Element = E>>(
     arithmetic: &mut K,
     manipulator: &Manipulator,
@@ -473,7 +473,7 @@ fn of_standard<E: Element, K: Arithmetic<Element = E>>(
     })
 }
 
-/// Base parameters, after the standard ones that they are named for.
+/// Base parameters, with the standard ones in their names.
 fn of_base<E: Element, K: Arithmetic<Element = E>>(
     arithmetic: &mut K,
     arm: &Arm<E>,
@@ -489,7 +489,7 @@ fn of_base<E: Element, K: Arithmetic<Element = E>>(
     if wanted.base == BaseParameters::LeftOut {
         return Ok(linear);
     }
-    // With the potential energy elsewhere, once the parameters are known.
+    // Needs the potential energy at another configuration, once the parameters are known.
     let elsewhere = |arithmetic: &mut K, state: &State<E>, energy: &dyn Fn(&State<E>) -> E| {
         let mut there = State::draw(arithmetic, arm.dof());
         there.pi.clone_from(&state.pi);
@@ -524,14 +524,14 @@ fn of_base<E: Element, K: Arithmetic<Element = E>>(
     Ok(linear)
 }
 
-/// What remains without the standard parameters: the masses of rotors.
+/// The torque without the standard parameters: from the masses of rotors.
 fn known_torque<E: Element>(arm: &Arm<E>, state: &State<E>, all: &[Standard]) -> Result<Vec<E>, String> {
     let none = vec![arm.zero.clone(); all.len()];
     let bare = with_standard(arm, all, &none).ok_or("an arm without bodies")?;
     Ok(reference_torques(&bare, state))
 }
 
-/// A base parameter without R in its name is that standard parameter and carries no other.
+/// Checks that a base parameter without R in its name equals that standard parameter alone.
 fn check_names<E: Element>(map: &[Vec<E>], base: &[(Standard, bool)], all: &[Standard], arm: &Arm<E>) -> Result<(), String> {
     for (row, (parameter, carries)) in map.iter().zip(base) {
         let alone =

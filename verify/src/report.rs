@@ -1,4 +1,4 @@
-//! What the checker found.
+//! The findings of the checker.
 
 use std::fmt;
 
@@ -7,12 +7,12 @@ use crate::check::Check;
 use crate::formula::Formula;
 use crate::ranges::Domain;
 
-/// Why a function is useless in floats.
+/// Reasons why a correct function is unusable in floats.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Unfit {
-    /// A value can leave the scalar: within the limits of the joints, or at one state of the box.
+    /// A value can exceed the scalar's range within the joint limits, or at a state of the box.
     Leaves(String),
-    /// Rounding makes errors that the equations do not ask for.
+    /// Rounding causes larger errors than the equations justify.
     Loses(String),
 }
 
@@ -23,26 +23,26 @@ impl fmt::Display for Unfit {
     }
 }
 
-/// What is not known by odds of a miss of at most 2^-168 is not verified: 2^40 tries of somebody who looks for a miss leave 2^-128.
+/// Larger odds of a miss do not verify a function: 2^40 attempts of an adversary at 2^-168 leave 2^-128.
 pub const MOST_LOG2_ODDS: f64 = -168.0;
 
-/// What is said of a function or a constant.
+/// The verdict on a function or a constant.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Verdict {
     /// It equals the equations.
     Equal,
-    /// It does not: the first entry that differs, and how.
+    /// It differs: the first differing entry, and the difference.
     Different {
-        /// Where: `[0][1]`, `.inertia[0][1]`.
+        /// Its place: `[0][1]`, `.inertia[0][1]`.
         entry: String,
-        /// What stands there and what should.
+        /// The found and the expected value.
         why: String,
     },
-    /// It is not what the checker can read, or is missing, or is not known.
+    /// It is unreadable, missing, or unknown.
     Refused(String),
 }
 
-/// A literal and the exact value that it stands for.
+/// A literal with its exact value.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Exact {
     /// Its digits.
@@ -51,28 +51,28 @@ pub struct Exact {
     pub value: Formula,
 }
 
-/// What is said of a function.
+/// The findings about a function.
 #[derive(Clone, Debug, PartialEq)]
 pub struct FunctionReport {
     /// Its name.
     pub name: String,
     /// The verdict.
     pub verdict: Verdict,
-    /// Random points in prime fields at which it was run.
+    /// Number of random points in prime fields.
     pub points: usize,
-    /// Random rational points at which it was run.
+    /// Number of random rational points.
     pub exact_points: usize,
-    /// log2 of the odds that a function which differs from the equations passes at all points of the prime fields.
+    /// log2 of the odds that a wrong function passes at all points of the prime fields.
     pub log2_odds: f64,
     /// Its literals in the order of the text.
     pub literals: Vec<Exact>,
-    /// How far rounding can take its entries from the exact ones over the box, where it equals the equations.
+    /// Bound on the distance of its entries from the exact ones over the box, if it equals the equations.
     pub bound: Option<Bound>,
-    /// Why it is useless in floats although it equals the equations, if it is ([`mod@crate::rounding`]).
+    /// The reason why it is unusable in floats although it equals the equations, if any ([`mod@crate::rounding`]).
     pub unfit: Option<Unfit>,
 }
 
-/// What is said of a constant.
+/// The findings about a constant.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ConstantReport {
     /// Its name.
@@ -88,26 +88,26 @@ pub struct ConstantReport {
 pub struct IdentityReport {
     /// The identity as a formula.
     pub name: String,
-    /// Whether it holds at all points, or why that was not tried.
+    /// Whether it holds at all points, or the reason why it was not checked.
     pub holds: Result<bool, String>,
-    /// Points in prime fields.
+    /// Number of points in prime fields.
     pub points: usize,
 }
 
-/// All that was found.
+/// All findings.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Report {
     /// Name of the robot.
     pub robot: String,
     /// `f64` or `f32`.
     pub scalar: String,
-    /// `libm`, `std` or `fast`; empty where no sines are asked for.
+    /// `libm`, `std` or `fast`; empty without sines.
     pub trig: String,
-    /// Hash of the description's text (SHA-256, hexadecimal).
+    /// SHA-256 of the description's text, hexadecimal.
     pub input: String,
-    /// Hash of the module's text.
+    /// SHA-256 of the module's text, hexadecimal.
     pub output: String,
-    /// What is wrong with the whole. No functions are reported where a text cannot be read; they are where a certificate does not fit.
+    /// Faults of the whole. An unreadable text has no reports of functions; a certificate that does not match leaves them in place.
     pub faults: Vec<String>,
     /// Constants.
     pub constants: Vec<ConstantReport>,
@@ -115,12 +115,12 @@ pub struct Report {
     pub functions: Vec<FunctionReport>,
     /// Identities.
     pub identities: Vec<IdentityReport>,
-    /// The box that error bounds are stated over.
+    /// The box of the error bounds.
     pub domain: Domain,
 }
 
 impl Report {
-    /// A report on texts with these hashes, with nothing in it.
+    /// An empty report on texts with these hashes.
     pub fn of(input: String, output: String) -> Report {
         Report {
             robot: String::new(),
@@ -141,7 +141,7 @@ impl Report {
         !self.functions.is_empty() && self.first_fault().is_none()
     }
 
-    /// The function of which alone is wrong that a value of it can leave the scalar: not its fault, but that of the limits.
+    /// The only faulty function, if its only fault is that a value exceeds the scalar's range: the limits cause this, not the function.
     pub fn beyond_the_scalar(&self) -> Option<&str> {
         let leaves = |f: &&FunctionReport| matches!(f.unfit, Some(Unfit::Leaves(_)));
         let first = self.functions.iter().find(leaves)?;
@@ -150,7 +150,7 @@ impl Report {
         others.passed().then_some(first.name.as_str())
     }
 
-    /// The first thing that is wrong: a function or a constant with the entry, the whole, or an identity.
+    /// The first fault: a function or constant with its entry, the whole module, or an identity.
     pub fn first_fault(&self) -> Option<String> {
         let named = |name: &str, verdict: &Verdict| match verdict {
             Verdict::Equal => None,
@@ -176,7 +176,7 @@ impl Report {
 }
 
 impl FunctionReport {
-    /// Whether it could be found equal by chance.
+    /// Whether chance could explain that it was found equal.
     pub fn is_uncertain(&self) -> bool {
         self.verdict == Verdict::Equal && self.log2_odds > MOST_LOG2_ODDS && Check::Odds.is_made()
     }
@@ -193,10 +193,10 @@ impl fmt::Display for Verdict {
     }
 }
 
-/// A table for people.
+/// A readable table.
 impl fmt::Display for Report {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        // The scalar is known of a text that could be read.
+        // The scalar is known if the text is readable.
         let scalar = if self.scalar.is_empty() { String::new() } else { format!(", {}", self.scalar) };
         writeln!(f, "robot {}{scalar}", self.robot)?;
         for fault in &self.faults {

@@ -1,7 +1,7 @@
-//! How far accelerations are from solving the equations of motion: a bound over the box that no small pivot spoils.
+//! The residual of accelerations in the equations of motion: a bound over the box that small pivots do not spoil.
 //!
-//! `forward_dynamics` solves B x = r, r = τ - C dq - F - g, by B = L D L', step by step in the text. With |δ| ≤ u for every rounding, D the number
-//! of additions on the longest way through a sum, and γ_k = k u / (1 - k u), the numbers that come out satisfy
+//! `forward_dynamics` solves B x = r, r = τ - C dq - F - g, by B = L D L', step by step in the text. Every rounding has |δ| ≤ u. Let D be the
+//! number of additions on the longest path through a sum, and γ_k = k u / (1 - k u). Then the computed numbers satisfy
 //!
 //! ```text
 //! ŝ_ij = b̂_ij - Σ_k l̂_ik ŝ_jk,  l̂ = fl(ŝ fl(1/d̂))     L* D̂ L*' = B̂ + ΔB,         L* = ŝ/d̂,  |ΔB| ≤ γ_{D+3} |L*| D̂ |L*'|
@@ -9,15 +9,15 @@
 //! x̂_i  = fl(1/d̂_i) ŷ_i - Σ_j l̂_ji x̂_j                   (D̂ L*' + ΔU) x̂ = ŷ,        |ΔU| ≤ γ_{2D+5} D̂ |L*'|
 //! ```
 //!
-//! (Higham, Accuracy and Stability of Numerical Algorithms, 2002, Sect. 9.3 and 10.1), hence (B + E) x̂ = r + e with
-//! |E_ij| ≤ |B̂ - B|_ij + γ_{4D+12} (|L*| D̂ |L*'|)_ij, and where all pivots D̂ are positive the last is at most √(b_ii b_jj), by Cauchy and Schwarz. What is
-//! left is the error of the entries of B and r, and intervals bound it. **The accelerations are those at torques off by at most
-//! max e + max|x̂| max_i Σ_j |E_ij|**; divided by the smallest eigenvalue of B this is their own error.
+//! (Higham, Accuracy and Stability of Numerical Algorithms, 2002, Sect. 9.3 and 10.1). Hence (B + E) x̂ = r + e with
+//! |E_ij| ≤ |B̂ - B|_ij + γ_{4D+12} (|L*| D̂ |L*'|)_ij. If all pivots D̂ are positive, the last term is at most √(b_ii b_jj) by the Cauchy-Schwarz
+//! inequality. Intervals bound the remaining errors of the entries of B and r. **The accelerations are exact for torques with an error of at most
+//! max e + max|x̂| max_i Σ_j |E_ij|**; divided by the smallest eigenvalue of B, this bounds the error of the accelerations.
 //!
-//! A product that is fused with an addition has one rounding less than is counted here.
+//! A product fused with an addition has one rounding less than counted here.
 //!
-//! That the text has this form is not taken on trust: every step from the reciprocals on is told by its value at a random state, to 40 digits, and
-//! every sum and every product must be one of the above. If one is not there is no such bound.
+//! The form of the text is checked: the value of every step from the reciprocals on identifies it at a random state, to 40 digits, and every sum
+//! and every product must have one of the above forms. Otherwise there is no such bound.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -31,16 +31,16 @@ use crate::program::{Argument, Program, Step};
 use crate::ranges::Range;
 use crate::reader::Module;
 
-/// The accelerations x returned are those at torques off by at most `constant + factor max|x|`, where all pivots are positive.
+/// The returned accelerations x are exact for torques with an error of at most `constant + factor max|x|`, if all pivots are positive.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Residual {
-    /// Part that does not depend on the accelerations.
+    /// The part independent of the accelerations.
     pub constant: f64,
-    /// Times the largest acceleration.
+    /// Factor of the largest acceleration.
     pub factor: f64,
 }
 
-/// The equations whose solution a function is, as other functions of the module give them.
+/// The equations that a function solves, from other functions of the module.
 #[derive(Clone, Debug)]
 pub struct Equations {
     /// B, C and g.
@@ -51,12 +51,12 @@ pub struct Equations {
     pub friction: Program,
     /// Exact values of its literals.
     pub friction_literals: Vec<Wide>,
-    /// Friction that grows with the load, and the exact values of its literals.
+    /// Load-dependent friction, with the exact values of its literals.
     pub load_friction: Option<(Program, Vec<Wide>)>,
 }
 
 impl Equations {
-    /// For `forward_dynamics` and `forward_dynamics_with`.
+    /// The equations for `forward_dynamics` and `forward_dynamics_with`.
     pub fn of(name: &str, module: &Module, claims: &Claims) -> Option<Equations> {
         let suffix = name.strip_prefix("forward_dynamics").filter(|suffix| ["", "_with"].contains(suffix))?;
         let program = |name: &str| {
@@ -72,7 +72,7 @@ impl Equations {
         Some(Equations { motion, motion_literals, friction, friction_literals, load_friction })
     }
 
-    /// B x - r in lanes for accelerations x.
+    /// B x - r in lanes, for accelerations x.
     pub fn residuals(&self, arguments: &TwofoldArguments, x: &[Twofold], scratch: &mut Vec<Twofold>) -> Option<Vec<Twofold>> {
         let n = x.len();
         let mut outputs = |program: &Program, literals: &[Wide]| {
@@ -115,7 +115,7 @@ impl Equations {
     }
 }
 
-/// What a step is; the numbers are rows and columns, a column left of its row.
+/// The meaning of a step; the numbers are row and column, with the column left of the diagonal.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 enum Quantity {
     Pivot(usize),
@@ -129,7 +129,7 @@ enum Quantity {
 
 use Quantity::{Forward, Pivot, Ratio, Reciprocal, Scaled, Schur, Solution};
 
-/// All quantities at a state, those that are 0 left out.
+/// All nonzero quantities at a state.
 fn quantities(b: &[Vec<Wide>], right: &[Wide]) -> Option<BTreeMap<Quantity, Wide>> {
     let n = right.len();
     let mut found = BTreeMap::new();
@@ -167,14 +167,14 @@ fn quantities(b: &[Vec<Wide>], right: &[Wide]) -> Option<BTreeMap<Quantity, Wide
     Some(found)
 }
 
-/// A summand of a sum: the step, its sign, and how many additions it goes through.
+/// A summand of a sum: its step, its sign, and the number of additions above it.
 struct Leaf {
     step: usize,
     negative: bool,
     additions: usize,
 }
 
-/// A program whose steps are being told.
+/// A program whose steps are being identified.
 struct Reading<'a> {
     program: &'a Program,
     values: &'a [Wide],
@@ -197,7 +197,7 @@ impl Reading<'_> {
         !self.known.contains_key(&quantity)
     }
 
-    /// Without the minus signs before it, which round nothing.
+    /// The step without leading minus signs, which do not round.
     fn bare(&self, mut step: usize) -> usize {
         while let Step::Negate(a) = self.program.steps[step] {
             step = a;
@@ -220,7 +220,7 @@ impl Reading<'_> {
         }
     }
 
-    /// Two summands, the first one first, that are one product with either sign.
+    /// Two summands that are the same product with opposite signs; the first in order comes first.
     fn opposites(&self, leaves: &[Leaf]) -> Option<(usize, usize)> {
         let pair = |(i, a): (usize, &Leaf)| {
             let same = |b: &Leaf| b.step == a.step && b.negative != a.negative && self.divided[a.step];
@@ -244,7 +244,7 @@ impl Reading<'_> {
         told(a, b).or_else(|| told(b, a))
     }
 
-    /// The factors that a product in the sum of a quantity may have, each pair for a different k.
+    /// The permitted factors of products in the sum of a quantity; each pair belongs to another k.
     fn allowed(&self, quantity: Quantity) -> Vec<(usize, [(Quantity, Quantity); 2])> {
         let twice = |a, b| [(a, b), (a, b)];
         let n = self.program.outputs.len();
@@ -262,15 +262,15 @@ impl Reading<'_> {
     }
 }
 
-/// A sum as it stands in the text: its summands without reciprocals, the rows and columns of products that it holds once with either sign (of
-/// sums shared by two entries), and the longest way through it.
+/// A sum of the text. `plain` are its summands without reciprocals; `cancelled` are row and column of products that occur with both signs, in sums
+/// shared by two entries; `additions` is the longest path through it.
 struct Sum {
     plain: Vec<Leaf>,
     cancelled: Vec<(usize, usize)>,
     additions: usize,
 }
 
-/// The sums of all quantities that the entries come from; `None` if a step is of another form.
+/// The sums of all quantities that the entries use; `None` if a step has another form.
 fn sums(reading: &Reading<'_>) -> Option<BTreeMap<Quantity, Sum>> {
     let mut open: Vec<(usize, Quantity)> =
         reading.program.outputs.iter().enumerate().map(|(i, output)| (output.step, Solution(i))).collect();
@@ -285,7 +285,7 @@ fn sums(reading: &Reading<'_>) -> Option<BTreeMap<Quantity, Sum>> {
             return None;
         }
         match quantity {
-            // A constant: of a joint that moves nothing else and is moved by nothing before it, so that its pivot is the entry of B.
+            // A constant reciprocal belongs to a joint without coupling to earlier joints, so its pivot is the entry of B.
             Reciprocal(j) if matches!(reading.program.steps[step], Step::Literal(_)) => {
                 if (0..j).any(|k| !reading.is_zero(Ratio(j, k))) {
                     return None;
@@ -310,7 +310,7 @@ fn sums(reading: &Reading<'_>) -> Option<BTreeMap<Quantity, Sum>> {
                 open.extend([(a, over), (b, under)]);
             }
             _ => {
-                // One number for each: two roundings of one would be two matrices.
+                // A quantity must have a single step: two differently rounded steps would mean two matrices.
                 if steps.insert(quantity, step).is_some_and(|other| other != step) {
                     return None;
                 }
@@ -351,10 +351,10 @@ fn sum(reading: &Reading<'_>, step: usize, quantity: Quantity, open: &mut Vec<(u
         }
         open.extend(factors);
     }
-    // Every product that is not 0 is there.
+    // Every nonzero product must occur.
     let missing =
         allowed.iter().any(|(k, pairs)| !seen.contains(k) && !reading.is_zero(pairs[0].0) && !reading.is_zero(pairs[0].1));
-    // The solution is a sum of products alone.
+    // The solution is a sum of products only.
     let foreign = matches!(quantity, Solution(_)) && !plain.is_empty();
     (!missing && !foreign).then_some(Sum { plain, cancelled, additions })
 }
@@ -413,7 +413,7 @@ pub fn residual(
         sum.plain.iter().map(high).sum::<f64>() + plain_error(Pivot(j))
     };
     let additions = sums.values().map(|sum| sum.additions).max().unwrap_or(0);
-    // The diagonal of L* D L*', which is that of B but for roundings, with products that cancel at most as large as the largest.
+    // The diagonal of L* D L*' equals that of B up to rounding; cancelling products are at most as large as its largest entry.
     let (g, high) = (gamma(additions + 4), (0..n).map(|j| most(j).max(0.0)).collect::<Vec<f64>>());
     let idle = |j: usize| sums.get(&Pivot(j)).map_or(0, |sum| sum.cancelled.len()) as f64;
     let left = 1.0 - g * (1.0 + 2.0 * (0..n).map(idle).fold(0.0, f64::max));
@@ -434,7 +434,7 @@ pub fn residual(
     };
     let row =
         |i: usize| -> f64 { (0..n).map(|j| entry(i, j) + gamma(4 * additions + 12) * (diagonal[i] * diagonal[j]).sqrt()).sum() };
-    // A little more for the roundings of these sums, and for what underflows.
+    // A margin for the roundings of these sums, and for underflow.
     let outward = 1.0 + 1e-9;
     let constant = (0..n).map(|i| error(Forward(i))).fold(0.0, f64::max) * outward + 1e-30;
     let factor = (0..n).map(row).fold(0.0, f64::max) * outward;

@@ -1,11 +1,11 @@
-//! Where the random points come from: a hash of what is to be proved, so that nobody can choose it to suit the points.
+//! The seed of the random points: a hash of the statement to prove, so that nobody can adapt the statement to the points.
 //!
-//! Whoever wants a wrong module verified can make many and see which passes. So the hash is of what counts alone: of the description its numbers and
-//! how they hang together; of the module what its functions do, step by step from the entries back, with the literals and the exact values that they
-//! are run with. Names, comments, blanks, documentation, the order of items and of statements, steps without influence, the order of summands
-//! and of factors, and claims that stand for no literal do not enter: changing them tries nothing again.
+//! An adversary can make many wrong modules and see which passes. So the hash only covers relevant data. For the description, these are its numbers
+//! and their structure. For the module, they are the computations of its functions, step by step back from the entries, with literals and exact
+//! values. It does not cover names, comments, blanks, documentation, the order of items and statements, steps without influence, the order of
+//! summands and factors, or claims without a literal. A change of these does not give another attempt.
 //!
-//! What remains, another sum that is as wrong, costs a reading and a run for each try. 2^40 tries at odds of 2^-168 each leave 2^-128
+//! The remaining option, another equally wrong sum, costs reading and running per attempt. 2^40 attempts at odds of 2^-168 each leave 2^-128
 //! ([`crate::report::MOST_LOG2_ODDS`]).
 
 use armgen_description::exact::{Number, Polynomial};
@@ -23,11 +23,11 @@ use crate::stream::Stream;
 /// A SHA-256 hash.
 type Hash = [u8; 32];
 
-/// A hash of parts, each with its length in front: two lists of parts are never one.
+/// A hash of parts with length prefixes, so that different lists of parts never coincide.
 struct Parts(Sha256);
 
 impl Parts {
-    /// Of what the parts are: no two kinds have one hash.
+    /// An empty hash for a kind of parts; different kinds never share a hash.
     fn of(kind: &str) -> Parts {
         let mut parts = Parts(Sha256::new());
         parts.add(kind.as_bytes());
@@ -48,8 +48,7 @@ impl Parts {
     }
 }
 
-/// The stream of random bits for a module: from the description, the module and the claims that its literals use; `run` for another run
-/// with points of its own.
+/// The stream of random bits for a module, from the description, the module and the claims for its literals; each `run` has separate points.
 pub fn stream(manipulator: &Manipulator, module: &Module, claims: &Claims, run: u64) -> Stream {
     let mut parts = Parts::of("module");
     parts.integer(run);
@@ -73,7 +72,7 @@ fn of_formulas(formulas: &[Formula]) -> Hash {
     parts.finish()
 }
 
-/// What a function does: its entries, each as the tree of its steps.
+/// The computation of a function: its entries, each as the tree of its steps.
 fn of_program(program: &Program, resolved: &Resolved) -> Hash {
     let literal = |index: usize| {
         let others = resolved.others.get(&index).map_or(&[][..], Vec::as_slice);
@@ -93,7 +92,7 @@ fn of_program(program: &Program, resolved: &Resolved) -> Hash {
             parts.add(second);
             parts.finish()
         };
-        // The order of summands and factors changes no bit.
+        // The order of summands and factors does not change any bit.
         let either = |kind: &str, a: &usize, b: &usize| {
             let (a, b) = (&steps[*a], &steps[*b]);
             two(kind, a.min(b), a.max(b))
@@ -146,7 +145,7 @@ fn of_program(program: &Program, resolved: &Resolved) -> Hash {
     parts.finish()
 }
 
-/// The numbers of a description and how they hang together.
+/// The numbers of a description and their structure.
 fn of_description(manipulator: &Manipulator) -> Hash {
     let mut arm = Description(Parts::of("description"));
     let Manipulator { name: _, parameters, gravity, joints, tip, tool, payload, task, regressor, inverse_kinematics: _ } =
@@ -252,7 +251,7 @@ impl Description {
         pose.elements.iter().for_each(|element| self.placement(element));
     }
 
-    /// A row with joint frames of its own is told by these, any other by what it is made of.
+    /// A row with its own joint frames is identified by these, any other row by its elements.
     fn row(&mut self, joint: &Joint) {
         if joint.link_frame == joint.row.after.frame && joint.placement.is_multiplied_out() {
             self.placement(&joint.placement);
@@ -263,7 +262,7 @@ impl Description {
         self.placement(&joint.link_frame);
     }
 
-    /// A body, with what sets it apart from one in the frame that carries it.
+    /// A body, with its difference from a body in the frame that carries it.
     fn part(&mut self, part: &PlacedBody) {
         for pose in [&part.frame, &part.axes] {
             if !pose.elements.is_empty() {

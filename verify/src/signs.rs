@@ -1,21 +1,20 @@
-//! What a function may take the sign of.
+//! The permitted operands of a sign.
 //!
 //! ```text
-//! torques of a load, of the equation of motion, and their derivatives   g_i(q) of joints with friction that grows with their load
+//! torques of a load, of the equation of motion, and their derivatives   g_i(q) of joints with load-dependent friction
 //! all others                                                            nothing
 //! ```
 //!
-//! |g_i| = sign(g_i) g_i is as exact as g_i is, and in derivatives sign(g_i) jumps where the equations jump. The sign of any other value
-//! that can be 0 is as good as random in floats where the value is small, and no bound over a box counts that. Two steps that are equal
-//! over the reals have different signs there, so that each g_i, or its negative, is the operand in one step. Signs of rates are
-//! inputs.
+//! |g_i| = sign(g_i) g_i is as exact as g_i, and in derivatives sign(g_i) jumps where the equations jump. For any other value that can be 0, the
+//! sign in floats is practically random where the value is small, and no bound over a box covers that. Two steps that are equal over the reals
+//! can have different signs there, so each g_i, or its negative, must be the operand in a single step. Signs of rates are inputs.
 //!
-//! Over a field a product is 0 where a factor is: an operand that is some ±g_i at every point is one of them everywhere.
+//! In a field a product is 0 only if a factor is. So an operand that equals some ±g_i at every point equals the same ±g_i everywhere.
 
 use crate::element::Element;
 use crate::program::{Program, Step};
 
-/// The gravity torques whose signs a function may take, by the name of the function that gives them; of an arm that has friction of loads.
+/// The function with the gravity torques whose signs a function may take, for an arm with load-dependent friction.
 pub fn of_torques(function: &str) -> Option<&'static str> {
     match function {
         "load_friction" | "inverse_dynamics" | "forward_dynamics" => Some("gravity"),
@@ -25,7 +24,7 @@ pub fn of_torques(function: &str) -> Option<&'static str> {
     }
 }
 
-/// The steps that a function takes the signs of; a step and its negative are one, and so is a number or an argument that stands there again.
+/// The steps whose signs a function takes. A step and its negative count once, and so do repeated numbers and arguments.
 pub fn operands(program: &Program) -> Vec<usize> {
     let first = |step: usize| match &program.steps[step] {
         Step::Literal(k) => {
@@ -52,12 +51,12 @@ pub fn operands(program: &Program) -> Vec<usize> {
     operands
 }
 
-/// Whether each of these values at a point is one of the torques there or its negative.
+/// Whether each of these values at a point equals one of the torques or its negative.
 pub fn are_torques<E: Element>(values: &[E], torques: &[&E]) -> bool {
     values.iter().all(|value| torques.iter().any(|torque| value == *torque || *value == torque.negated()))
 }
 
-/// Whether two of these values at a point are the same, up to their signs.
+/// Whether two of these values at a point are equal up to sign.
 pub fn are_equal<E: Element>(values: &[E]) -> bool {
     let same = |a: &E, b: &E| a == b || *a == b.negated();
     values.iter().enumerate().any(|(k, a)| values[..k].iter().any(|b| same(a, b)))

@@ -1,7 +1,7 @@
-//! Facts in comments against what was found: the description that a module was made from, the box and the size of rounding errors, the operations
-//! of each function. All other words are prose, which nobody certifies: another version of armgen may have written them.
+//! Compares facts in comments with the findings: the description of the module, the box and size of rounding errors, and the operations of each
+//! function. All other words are uncertified prose, possibly from another version of armgen.
 //!
-//! Not judged: the name of the file and the number of the version in the first line.
+//! The file name and the version number in the first line are not checked.
 
 use std::collections::BTreeMap;
 
@@ -11,10 +11,10 @@ use crate::program::{Program, Step};
 use crate::reader::{is_fact, is_hidden, Function, Module, FACTS};
 use crate::report::Report;
 
-/// Digits of the hash of the description in the head.
+/// Number of hash digits of the description in the head.
 const DIGITS: usize = 16;
 
-/// All facts that are wrong. Bounds are judged where the checker has them.
+/// All wrong facts. Bounds are compared if the checker has them.
 pub fn faults(module: &Module, report: &Report) -> Vec<String> {
     let known: BTreeMap<String, Bound> =
         report.functions.iter().filter_map(|f| Some((f.name.clone(), f.bound.clone()?))).collect();
@@ -54,7 +54,7 @@ pub fn faults(module: &Module, report: &Report) -> Vec<String> {
     faults
 }
 
-/// The first line in which two texts differ, counted from 0, as it stands in each.
+/// The first line in which two texts differ, counted from 0, with both versions.
 pub(crate) fn first_difference<'a>(
     mut found: impl Iterator<Item = &'a str>,
     mut expected: impl Iterator<Item = &'a str>,
@@ -70,13 +70,13 @@ pub(crate) fn first_difference<'a>(
     None
 }
 
-/// Whether the name of a file can have a character in the head: what ends or disguises a comment, or means something in one, in any language, is
-/// written otherwise there.
+/// Whether a file name in the head may contain a character. Characters that end or disguise a comment, or have a meaning in a comment of any
+/// language, are replaced there.
 fn is_of_a_file(c: char) -> bool {
     !is_hidden(c) && (c.is_alphanumeric() || c == ' ' || (c.is_ascii_graphic() && !"*\\?:=".contains(c)))
 }
 
-/// The first line of a file: armgen made it from this description. The name of the file and the number of the version are not judged.
+/// Checks the first line of a file: armgen made it from this description. The file name and the version number are not checked.
 pub(crate) fn origin(first: &str, input: &str) -> Result<(), String> {
     let hash = &input[..DIGITS.min(input.len())];
     let named =
@@ -89,7 +89,7 @@ pub(crate) fn origin(first: &str, input: &str) -> Result<(), String> {
     Ok(())
 }
 
-/// Whether the head has the box of the rounding errors; it is the right one and stands there once.
+/// Whether the head contains the box of the rounding errors; an error if it differs or occurs twice.
 fn has_box(head: &[&str], expected: &[String]) -> Result<bool, String> {
     let word = expected.first().and_then(|line| line.split(':').next()).unwrap_or("");
     let Some(at) = head.iter().position(|line| line.contains(word)) else { return Ok(false) };
@@ -106,7 +106,7 @@ fn has_box(head: &[&str], expected: &[String]) -> Result<bool, String> {
     }
 }
 
-/// Whether documentation has one line with this word, as expected; none where nothing is expected. What ends in a blank is the line's beginning.
+/// Checks that documentation has a single line with this word, the expected one, or no such line. A text that ends in a blank is a line's prefix.
 fn sentence(function: &Function, prefix: &str, expected: Option<&str>) -> Result<(), String> {
     let word = prefix.trim_end_matches(": ");
     let mut lines = function.documentation.iter().filter(|line| line.contains(word));

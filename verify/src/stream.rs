@@ -8,24 +8,24 @@ pub struct Stream(Generator);
 
 #[derive(Clone, Debug)]
 enum Generator {
-    /// splitmix64 (Steele, Lea and Flood 2014): its state.
+    /// State of splitmix64 (Steele, Lea and Flood 2014).
     Counting(u64),
-    /// SHA-256 of a key and the number of a block; what is left of the last block.
+    /// SHA-256 of a key and a block number; the unused words of the last block.
     Hashing { key: [u8; 32], blocks: u64, left: Vec<u64> },
 }
 
 impl Stream {
-    /// The stream of a number, fast: for states at which something is measured.
+    /// A fast stream from a number, for states of measurements.
     pub fn new(seed: u64) -> Stream {
         Stream(Generator::Counting(seed))
     }
 
-    /// The stream of a hash, which nobody can steer: for points at which something is proved.
+    /// A stream from a hash, which nobody can steer, for points of proofs.
     pub fn of(key: [u8; 32]) -> Stream {
         Stream(Generator::Hashing { key, blocks: 0, left: Vec::new() })
     }
 
-    /// A stream of its own that follows from this one.
+    /// A separate stream derived from this one.
     pub fn branch(&mut self) -> Stream {
         match &self.0 {
             Generator::Counting(_) => Stream::new(self.bits()),

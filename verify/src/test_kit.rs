@@ -1,8 +1,8 @@
-//! A test file for a user's project: that the module does on their machine what it does on ours.
+//! A test file for a user's project: it checks that the module gives the same results on the user's machine.
 //!
-//! It holds reference states with the values of every function there, computed from the equations in 256 bits and rounded once, and the
-//! identities of the dynamics at many states in floats. It needs the module and nothing else; the part that is the same for every robot is
-//! `test_kit/template.rs`, in other languages (`test_kit/languages.rs`) a template of their own.
+//! It contains reference states with the values of every function, computed from the equations in 256 bits and rounded once, and the identities of
+//! the dynamics at many states in floats. It needs only the module. Its part common to all robots is `test_kit/template.rs`; each other language
+//! (`test_kit/languages.rs`) has its own template.
 
 mod languages;
 
@@ -27,7 +27,7 @@ use crate::reader::Module;
 use crate::reference::{BaseParameters, Wanted};
 use crate::stream::Stream;
 
-/// Floats of 256 bits as an arithmetic.
+/// Float arithmetic with 256 bits.
 struct Fine(Stream);
 
 impl Arithmetic for Fine {
@@ -44,14 +44,14 @@ impl Arithmetic for Fine {
 }
 
 fn uniform(stream: &mut Stream, low: f64, high: f64) -> f64 {
-    // Few digits, so that the file reads well and f32 holds them exactly.
+    // Few digits, so that the file is readable and f32 represents them exactly.
     let steps = ((high - low) * 64.0) as u64;
     low + stream.below(steps + 1) as f64 / 64.0
 }
 
 const STATES: usize = 3;
 
-/// Random arguments of the size of a robot's.
+/// Random arguments of typical size.
 fn arguments(stream: &mut Stream, n: usize, p: usize) -> Arguments<f64> {
     let mut many = |count: usize, low: f64, high: f64| (0..count).map(|_| uniform(stream, low, high)).collect();
     Arguments {
@@ -89,7 +89,7 @@ fn list(values: &[f64], real: Float) -> String {
     digits.join(", ")
 }
 
-/// A value from the equations: of which function, at which state, by rows.
+/// A value from the equations: the function, the state, and the entries by rows.
 struct Value {
     name: String,
     promise: &'static Promise,
@@ -98,14 +98,14 @@ struct Value {
     entries: Vec<f64>,
 }
 
-/// What a test file is made of, in no language.
+/// The content of a test file, independent of the language.
 struct Kit {
     robot: String,
     real: Float,
     sizes: Sizes,
     states: Vec<Arguments<f64>>,
     values: Vec<Value>,
-    /// Whether friction grows with the load.
+    /// Whether friction depends on the load.
     loaded: bool,
 }
 
@@ -129,7 +129,7 @@ impl Kit {
             let wanted = Wanted { base: BaseParameters::LeftOut, pivots: false };
             let equations = base::values_in_numbers(&mut fine, manipulator, &vector, None, state, wanted)?;
             for (name, entries) in equations.iter().filter(|(name, _)| present(name)) {
-                // Forward dynamics is judged by its residual.
+                // The residual judges forward dynamics.
                 let Some((promise, with)) = Promise::of(name).filter(|(promise, _)| promise.name != "forward_dynamics") else {
                     continue;
                 };
@@ -142,7 +142,7 @@ impl Kit {
     }
 }
 
-/// The text of the test file. `import` brings the module in as `robot`: `use my_crate::robot;`, or
+/// The text of the test file. `import` must provide the module as `robot`: `use my_crate::robot;`, or
 /// `#[path = "../src/robot.rs"] mod robot;`.
 pub fn test_kit(manipulator: &Manipulator, module: &Module, import: &str, origin: &Origin) -> Result<String, String> {
     let kit = Kit::of(manipulator, module)?;
@@ -194,8 +194,8 @@ pub fn test_kit(manipulator: &Manipulator, module: &Module, import: &str, origin
     Ok(text)
 }
 
-/// The text of the test file in another language than Rust; `name` is what the module is called where it is taken in: a file of C or
-/// JavaScript, a module of Python, a package of MATLAB.
+/// The text of the test file in another language than Rust; `name` is the name of the imported module: a file in C or JavaScript, a module in
+/// Python, a package in MATLAB.
 pub fn in_language(
     manipulator: &Manipulator,
     module: &Module,
@@ -206,10 +206,10 @@ pub fn in_language(
     Ok(languages::print(&Kit::of(manipulator, module)?, language, name, origin))
 }
 
-/// The nearest floats but for the last bit, and 0 without a sign.
+/// The nearest floats up to the last bit, with an unsigned 0.
 ///
-/// The 256 bits round, so that an entry that is 0 identically comes out as some 2^-256 of what it was summed from: what is below 2^-200 of the
-/// largest entry is 0. No test in floats could tell the two apart.
+/// The 256 bits round, so an identically zero entry becomes some 2^-256 of its summands. Values below 2^-200 of the largest entry become 0; no test
+/// in floats could distinguish them.
 fn nearest(entries: &[Wide]) -> Vec<f64> {
     let entries: Vec<f64> = entries.iter().map(|entry| entry.to_f64()).collect();
     let largest = entries.iter().fold(1.0f64, |largest, x| largest.max(x.abs()));
@@ -227,7 +227,7 @@ mod tests {
     #[test]
     fn what_256_bits_leave_of_a_zero_is_zero() {
         let of = Wide::from_f64;
-        // 1/3 rounds: thrice it is 1 but for the last bit.
+        // 1/3 rounds: three times it is 1 up to the last bit.
         let third = of(1.0).times(&of(3.0).inverse().unwrap());
         let left = third.times(&of(3.0)).minus(&of(1.0));
         assert!(left.to_f64() != 0.0);

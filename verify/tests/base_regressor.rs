@@ -1,4 +1,4 @@
-//! Which base parameters a `base_regressor` has is its author's choice; that it is a regressor of them is not.
+//! The author may choose the base parameters of a `base_regressor`, but the function must be a regressor of them.
 
 use crate::common;
 
@@ -18,7 +18,7 @@ use armgen_verify::program::{Angle, Output, Program, Step};
 use armgen_verify::reader::{Function, Module};
 use armgen_verify::report::Verdict;
 
-/// A `base_regressor` that can be changed, with its parameters.
+/// A `base_regressor` under modification, with its parameters.
 #[derive(Clone)]
 struct Subject {
     module: Module,
@@ -49,20 +49,20 @@ impl Subject {
         self.program.steps.len() - 1
     }
 
-    /// Puts what `of` makes of the steps of a row in place of a column, in some rows.
+    /// Replaces a column in some rows; `of` computes the new step from the steps of a row.
     fn replace(&mut self, column: usize, rows: impl IntoIterator<Item = usize>, of: impl Fn(&[usize]) -> Step) {
         for i in rows {
             self.rows[i][column] = self.step(of(&self.rows[i].clone()));
         }
     }
 
-    /// A column of this name.
+    /// The column with this name.
     fn column(&self, name: &str) -> usize {
         let place = self.own.named.iter().position(|(parameter, _)| parameter.name() == name);
         place.unwrap_or_else(|| panic!("no {name} in {:?}", self.own.named))
     }
 
-    /// Joints of whose torque a column is not always 0.
+    /// The joints whose torque in a column is not identically 0.
     fn felt(&self, column: usize) -> Vec<usize> {
         let zero = |step: usize| match &self.program.steps[step] {
             Step::Literal(k) => self.program.literals[*k].value == 0.0,
@@ -71,7 +71,7 @@ impl Subject {
         (0..self.rows.len()).filter(|&i| !zero(self.rows[i][column])).collect()
     }
 
-    /// The points at which it is judged.
+    /// The points of the check.
     fn checker(&self) -> Checker {
         let vector = Vector::of(&self.manipulator, &constants::parameter_names(&self.module)).expect("a parameter vector");
         let effort = Effort { points: 2, exact_points: 1, seed: 5 };
@@ -150,7 +150,7 @@ fn coefficients_are_constant() {
 
 #[test]
 fn other_base_parameters_will_do() {
-    // mcx (a) + mcy (b) = (2 mcx + mcy) (a/2) + mcy (b - a/2): a turned frame, another unit.
+    // mcx (a) + mcy (b) = (2 mcx + mcy) (a/2) + mcy (b - a/2): a rotated frame, another unit.
     let mut subject = subject("panda7");
     let (x, y) = (subject.column("mcx5"), subject.column("mcy5"));
     let half = Formula::Rational(Rational::from_parts(1.into(), 2u8.into()));
@@ -182,7 +182,7 @@ fn columns_are_independent() {
     subject.check(&format!("[0][{last}] its column depends on those before it"));
 }
 
-/// What is said of a module edited at one place, with the claims of the right one.
+/// Checks the fault of a module edited at one place, with the claims of the correct module.
 #[track_caller]
 fn check_edited(name: &str, edit: impl Fn(&str) -> String, wanted: &str) {
     let source = common::source(name);
@@ -194,7 +194,7 @@ fn check_edited(name: &str, edit: impl Fn(&str) -> String, wanted: &str) {
     assert!(!report.passed() && said.contains(wanted), "{said}");
 }
 
-/// The text with something replaced where it first stands after `from`.
+/// The text with a replacement at the first occurrence after `from`.
 fn after(text: &str, from: &str, old: &str, new: &str) -> String {
     let at = text.find(from).expect("it stands there");
     text[..at].to_string() + &text[at..].replacen(old, new, 1)
@@ -226,7 +226,7 @@ fn claimed_values_must_give_the_torque() {
     let report = certify(&source, &generated);
     let mut certificate = Certificate::of(&report);
     let values = certificate.constants.iter_mut().find(|c| c.name == "NOMINAL_BASE_PARAMETERS").expect("values");
-    // Nearer to the literal than any float, and not the value.
+    // Closer to the literal than any float, but not the value.
     values.literals[1].1 += " + 1/100000000000000000000";
     let fault = verify(&source, &generated.module, Some(&certificate)).first_fault().unwrap_or_default();
     assert!(fault.starts_with("base_regressor[") && fault.contains("does not give the torque"), "{fault}");

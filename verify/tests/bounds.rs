@@ -1,4 +1,4 @@
-//! Error bounds: never exceeded, not far from the errors that occur, told apart from a fault, and the same in the companion that is emitted.
+//! Error bounds are never exceeded, close to actual errors, distinguish errors from faults, and agree with the emitted companion.
 
 #[path = "bounds/page.rs"]
 mod page;
@@ -55,7 +55,7 @@ fn check(name: &str, options: &Options, states: u64) {
             assert!(torques.beyond == 0 && torques.part <= 1.0 && torques.largest > 0.0, "{name} {scalar:?}: {seen:?}");
         }
         assert!(seen.running.is_finite() && seen.running <= 1e-3 * seen.value.max(1e-30), "{name} {scalar:?}: {seen:?}");
-        // Of as few states as these the worst error is not the worst there is: with a million of them the ratio is below 100.
+        // So few states miss the worst error; with a million states the ratio is below 100.
         assert!(seen.ratio().is_none_or(|ratio| ratio < 400.0), "{name} {scalar:?}: {seen:?}");
     }
 }
@@ -82,7 +82,7 @@ fn bounds_hold_and_are_near_with_fused_operations() {
     }
 }
 
-/// Over the box and at a state, the bounds of a function with fused operations are below those of the same steps, each rounded.
+/// Over the box and at a state, fused operations have smaller bounds than the same steps with separate rounding.
 #[test]
 fn a_fused_operation_rounds_once() {
     let bounds = |fuse: bool| {
@@ -101,7 +101,7 @@ fn a_fused_operation_rounds_once() {
     );
 }
 
-/// A function whose numbers are wrong by some units in the last place exceeds the bounds of the right one.
+/// A function whose numbers are wrong by some units in the last place exceeds the bounds of the correct one.
 #[test]
 #[ignore = "wide"]
 fn a_planted_fault_is_seen() {
@@ -141,7 +141,7 @@ fn bounds_are_rounded_up_and_stand_in_the_documentation() {
     assert_eq!(stated, module.functions.len());
     let head: Vec<&str> = documented.lines().take_while(|line| line.starts_with("//")).collect();
     assert!(head.iter().any(|line| line.starts_with("// Box of the rounding errors: ")), "{head:#?}");
-    // Comments alone have changed.
+    // Only comments have changed.
     let again = Module::read(&documented).expect("a module");
     assert_eq!((again.real, again.trig, &again.constants), (module.real, module.trig, &module.constants));
     let programs = |module: &Module| -> Vec<_> {
@@ -150,7 +150,7 @@ fn bounds_are_rounded_up_and_stand_in_the_documentation() {
     assert_eq!(programs(&again), programs(&module));
 }
 
-/// The companion, compiled beside its module, returns what the checker computes with.
+/// The companion, compiled with its module, returns the values of the checker.
 #[test]
 #[ignore = "wide"]
 fn the_companion_returns_the_same_bounds() {
@@ -218,8 +218,8 @@ fn the_companion_returns_the_same_bounds() {
     }
 }
 
-/// The companion's bound of inverse kinematics, compiled: posture q has the pose T(q) but for rounding, so the bound at a point beside q is
-/// at least its distance from q, and not much more; at singular postures and far from q it is infinite.
+/// The companion's bound for inverse kinematics, compiled. Posture q has the pose T(q) up to rounding. So the bound at a point near q is at least
+/// its distance from q, and not much larger; at singular postures and far from q it is infinite.
 #[test]
 #[ignore = "wide"]
 fn the_bound_of_inverse_kinematics_holds() {
@@ -247,7 +247,7 @@ fn the_bound_of_inverse_kinematics_holds() {
     }
 }
 
-/// Sizes that are joined are the larger ones, counts are added.
+/// Merging takes the larger sizes and adds the counts.
 #[test]
 fn what_is_seen_in_parts_is_seen_of_the_whole() {
     let (_, module, claims, manipulator) = robot("scara4", Scalar::F64);
@@ -259,7 +259,7 @@ fn what_is_seen_in_parts_is_seen_of_the_whole() {
     assert!(first.iter().zip(&second).all(|(a, b)| a.error >= b.error && a.running >= b.running));
 }
 
-/// Side by side and one by one the same bits.
+/// Lanes give the same bits as single runs.
 #[test]
 #[ignore = "wide"]
 fn lanes_return_the_bounds_of_the_companion() {
@@ -269,7 +269,7 @@ fn lanes_return_the_bounds_of_the_companion() {
         let (_, module, claims, manipulator) = robot(name, scalar);
         let (domain, mut stream) = (domain_of(&manipulator, &module), Stream::new(8));
         let mut states: [_; LANES] = std::array::from_fn(|_| draw(&domain, &mut stream, module.real));
-        // Where sensitivities are 0, and divisors.
+        // States where sensitivities or divisors are 0.
         states[3].q.fill(0.0);
         states[5].dq.fill(0.0);
         let side = LaneArguments::new(&states, module.real);
@@ -291,7 +291,7 @@ fn lanes_return_the_bounds_of_the_companion() {
     }
 }
 
-/// Accelerations have a bound over the box, of themselves or of the torques that they belong to, and errors of the equations exceed it.
+/// Accelerations have a bound over the box, on themselves or on their torques, and wrong equations exceed it.
 #[test]
 #[ignore = "wide"]
 fn accelerations_solve_the_equations_within_a_bound() {
@@ -319,7 +319,7 @@ fn accelerations_solve_the_equations_within_a_bound() {
     assert!(wrong[0].residual.as_ref().is_some_and(|torques| torques.beyond > 0), "{wrong:?}");
 }
 
-/// A solution of another form has no such bound: here one with another quotient.
+/// A solution of another form, here with another quotient, has no such bound.
 #[test]
 #[ignore = "wide"]
 fn another_form_of_the_solution_has_no_bound_of_torques() {

@@ -1,4 +1,4 @@
-//! docs/certificate.md keeps its word: each production has a module that leaves it, and each of these modules is refused as the page says.
+//! docs/certificate.md is correct: each production has a module that violates it, and the checker refuses each with the documented message.
 
 use crate::common;
 
@@ -9,7 +9,7 @@ fn page() -> String {
     std::fs::read_to_string(concat!(env!("CARGO_MANIFEST_DIR"), "/../docs/certificate.md")).expect("the page")
 }
 
-/// Rows of the table: production, what is replaced, by what, and what is said.
+/// Rows of the table: production, replaced text, replacement, message.
 fn rows(page: &str) -> Vec<[String; 4]> {
     let cell = |text: &str| text.trim().to_string();
     let code = |text: &str| text.trim().strip_prefix('`').and_then(|text| text.strip_suffix('`')).expect("code").to_string();
@@ -30,7 +30,7 @@ fn modules_that_leave_a_production_are_refused_as_the_page_says() {
     let module = common::generate(&source, Scalar::F64).module;
     assert!(Module::read(&module).is_ok_and(|module| module.functions.iter().all(|(_, function)| function.is_ok())));
     for [production, old, new, said] in rows(&page()) {
-        // The step that the page takes for an example is one of the inertia matrix.
+        // The page's example step belongs to the inertia matrix.
         let from = if old.contains("t1") || old.contains("c2") {
             module.find("pub fn inertia_matrix(").expect("it is there")
         } else {

@@ -1,9 +1,9 @@
-//! The table of functions that the checker has and the catalogue of the generator: written apart, they must say the same.
+//! The checker's table of functions and the generator's catalogue are written independently and must agree.
 
 use armgen_codegen::catalogue::{self, Argument, Quantity};
 use armgen_verify::reference::PROMISES;
 
-/// The type of a result as the catalogue declares it, in Rust without blanks, and the names of its fields.
+/// The Rust type of a result in the catalogue, without blanks, and the names of its fields.
 fn result(quantity: &Quantity) -> (String, Vec<String>) {
     let parts = quantity
         .result

@@ -1,4 +1,4 @@
-//! Whatever text is given for a module, the checker ends, on a small stack too, and says what is wrong and where.
+//! For any text as a module, the checker terminates, also on a small stack, and reports the fault and its place.
 
 use armgen_codegen::diagnostic::Colour;
 use armgen_codegen::emit::Language;
@@ -20,7 +20,7 @@ fn module() -> String {
     armgen_codegen::generate(&source(), &Options::default()).0.expect("a module").module
 }
 
-/// What is wrong first, of the module with a text for another in it; `None` if it is right.
+/// The first fault of the module after a replacement; `None` if it is correct.
 #[track_caller]
 fn fault(old: &str, new: &str) -> Option<String> {
     let module = module();
@@ -30,7 +30,7 @@ fn fault(old: &str, new: &str) -> Option<String> {
 
 const GRAVITY: &str = "pub fn gravity(q: &[Real; DOF]) -> [Real; DOF] {";
 
-/// With steps before those of the gravity torque.
+/// The fault with these steps before those of the gravity torque.
 #[track_caller]
 fn with_steps(steps: &str) -> Option<String> {
     fault(GRAVITY, &format!("{GRAVITY} let t100 = q[0]; {steps}"))
@@ -65,16 +65,16 @@ fn deep_expressions_are_refused_and_long_ones_read() {
     check(with_steps(&format!("let _: {}Real;", "A<B, ".repeat(200_000))), "`:` where an emitted module has `=`");
     check(fault(GRAVITY, &format!("fn sign() {}", "{".repeat(1_000_000))), "the text is cut off");
     assert_eq!(around("(", ")", 16), None);
-    // It was read, and costs more than the documentation says.
+    // It is readable, and costs more than the documentation states.
     check(around("", " + q[0]", 100_000), "gravity: the documentation says `Cost: none");
 }
 
 #[test]
 fn steps_that_grow_without_end_are_refused() {
-    // Right, but of numbers that no machine holds: exact values are those that entries need.
+    // Correct, but with numbers that exceed any memory; exact evaluation only covers values that entries need.
     let squares = chain(60, |i| format!("let t{} = t{i} * t{i};", i + 1));
     check(with_steps(&squares), "gravity: values of up to inf on the way to entries of up to 0 can leave the scalar");
-    // The degree doubles where no number grows.
+    // The degree doubles without growing numbers.
     let powers = chain(70, |i| format!("let t{} = t{i} * t{i};", i + 1));
     let fault = fault(
         "pub fn kinetic_energy(q: &[Real; DOF], dq: &[Real; DOF]) -> Real {",
@@ -117,7 +117,7 @@ fn what_is_no_module_is_told_apart() {
 
 const LOADED: &str = include_str!("../../tests/robots/load_friction.yaml");
 
-/// In other languages, too: where each begins the sign of a rate.
+/// The same in other languages, with the notation for the sign of a rate in each.
 #[test]
 fn deep_signs_are_refused_in_every_language() {
     let generated = armgen_codegen::generate(&Source::new("robot.yaml", LOADED), &Options::default()).0.expect("a module");
@@ -136,7 +136,7 @@ fn deep_signs_are_refused_in_every_language() {
     }
 }
 
-/// What a statement goes on over is no place for an empty line, or for a comment.
+/// No empty line and no comment may interrupt a continued statement.
 #[test]
 fn statements_that_go_on_are_not_cut() {
     let generated = armgen_codegen::generate(&Source::new("robot.yaml", LOADED), &Options::default()).0.expect("a module");
@@ -156,7 +156,7 @@ fn statements_that_go_on_are_not_cut() {
     assert!(cut > 2);
 }
 
-/// Files of a package that are another number of files in a folder.
+/// Files of a package that would become another number of files in a folder.
 #[test]
 fn files_of_a_package_stay_files() {
     let file = |name: &str, text: &str| (name.to_string(), text.to_string());
@@ -173,7 +173,7 @@ fn files_of_a_package_stay_files() {
     }
 }
 
-/// The name of the description in the first line cannot end the comment that it stands in.
+/// The description's name in the first line cannot end that line's comment.
 #[test]
 fn the_first_line_is_a_comment() {
     let generated = armgen_codegen::generate(&source(), &Options::default()).0.expect("a module");
@@ -186,7 +186,7 @@ fn the_first_line_is_a_comment() {
             assert!(fault.is_some(), "{language:?}: {name}");
         }
     }
-    // Of such a file the name is written otherwise.
+    // The head replaces characters of such file names.
     for name in ["a */ #define else /*.yaml", "a (input b.yaml", "r\u{e4}der (2).yaml", "a\u{115f}.yaml", "coding: x.yaml"] {
         let source = Source::new(name, ROBOT);
         let generated = armgen_codegen::generate(&source, &Options::default()).0.expect("a module");
@@ -197,7 +197,7 @@ fn the_first_line_is_a_comment() {
     }
 }
 
-/// A module that was made without a pass is right without its certificate, too: its constants are those of the generator without that pass.
+/// A module made without a pass is correct without its certificate, too: its constants are those of the generator without that pass.
 #[test]
 #[ignore = "wide"]
 fn modules_made_without_a_pass_are_right() {
@@ -213,7 +213,7 @@ fn modules_made_without_a_pass_are_right() {
     assert!(others > 5);
 }
 
-/// Lengths of a centimetre, and of what calibration leaves of parallel axes: operands of quotients are larger than torques there.
+/// Lengths of a centimetre, and remainders of parallel axes after calibration: operands of quotients are larger than torques there.
 #[test]
 #[ignore = "wide"]
 fn short_links_are_no_loss() {
@@ -235,7 +235,7 @@ fn short_links_are_no_loss() {
     }
 }
 
-/// What no entry needs is not run exactly, and what is needed and long costs no more than it may.
+/// Unneeded steps have no exact evaluation, and long needed values stay within a cost limit.
 #[test]
 fn long_exact_values_are_bounded() {
     let squares = chain(14, |i| format!("let t{} = t{i} * t{i};", i + 1));
@@ -248,7 +248,7 @@ fn long_exact_values_are_bounded() {
     println!("{:?}", start.elapsed());
 }
 
-/// A million comments are passed over in the time that a text of their length takes.
+/// The reader skips a million comments in a time proportional to their length.
 #[test]
 fn comments_cost_as_much_as_they_are_long() {
     let generated = armgen_codegen::generate(&source(), &Options::default()).0.expect("a module");
@@ -265,8 +265,8 @@ fn comments_cost_as_much_as_they_are_long() {
     }
 }
 
-/// Faults of a description that only equations show. The checker reads without the generator, so it meets such arms: it ends, and accepts no
-/// module that was made for an arm beside them.
+/// Faults of a description that only equations reveal. The checker does not use the generator, so it sees such arms. It terminates, and accepts no
+/// module that was made for a similar arm.
 #[test]
 fn arms_whose_equations_are_faulty_have_no_module() {
     let without_parameters = "regressor: [k, r, phi, m]";

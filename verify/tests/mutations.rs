@@ -1,9 +1,9 @@
-//! Changes of an emitted module are found, each with the function and the entry that it spoils.
+//! The checker finds changes of an emitted module, with the function and the entry they affect.
 //!
-//! A change that alters no bit of any entry at many states is none, and neither is one where all that it touches cancels on the way to the
-//! result: the two functions then agree to 40 digits everywhere and the changed one is as right as the other. The short test runs a few
-//! dozen changes on small robots; all of them, 200 on every robot in both scalars, by `cargo test --release -p armgen-verify --test
-//! mutations -- --ignored --nocapture`.
+//! A change that alters no bit of any entry at many states does not count. Neither does a change whose effect cancels before the result: both
+//! functions then agree to 40 digits everywhere, and the changed one is equally correct. The short test runs a few dozen changes on small robots.
+//! All of them, 200 on every robot in both scalars, run with
+//! `cargo test --release -p armgen-verify --test all -- --ignored --nocapture all_changes_are_found`.
 
 use crate::common;
 #[path = "common/mutation.rs"]
@@ -29,7 +29,7 @@ use armgen_verify::{constants, prepare, verify_with};
 
 use mutation::Mutable;
 
-/// Random arguments; q and rates of the size of a robot's, parameters positive.
+/// Random arguments of typical size for a robot, with positive parameters.
 fn arguments(stream: &mut Stream, n: usize, p: usize) -> Arguments<f64> {
     let mut many = |count: usize, low: f64, high: f64| -> Vec<f64> {
         (0..count).map(|_| low + (high - low) * (stream.bits() >> 11) as f64 / (1u64 << 53) as f64).collect()
@@ -45,14 +45,14 @@ fn changed_entries(a: &Program, b: &Program, real: Float, states: &[Arguments<f6
     for state in states {
         let (a, b) = (a.run_float(state, real), b.run_float(state, real));
         for (changed, (a, b)) in changed.iter_mut().zip(a.iter().zip(&b)) {
-            // 0 and -0 are told apart, one NaN is not told from another.
+            // 0 and -0 differ here; all NaNs are equal.
             *changed |= a.to_bits() != b.to_bits() && !(a.is_nan() && b.is_nan());
         }
     }
     a.outputs.iter().zip(changed).filter(|(_, changed)| *changed).map(|(output, _)| output.place.clone()).collect()
 }
 
-/// Whether two constants have the same value, however it is written.
+/// Whether two constants have the same value, in any notation.
 fn same_bits(a: &Constant, b: &Constant) -> bool {
     match (a, b) {
         (Constant::Array(a), Constant::Array(b)) => a.iter().zip(b).all(|(a, b)| same_bits(a, b)),
@@ -61,7 +61,7 @@ fn same_bits(a: &Constant, b: &Constant) -> bool {
     }
 }
 
-/// Entries that differ in 40 digits at some states: what tells others apart is rounding alone.
+/// Entries that differ in 40 digits at some states; otherwise only rounding differs.
 fn different_entries(a: &Program, b: &Program, states: &[Arguments<f64>]) -> Vec<String> {
     let values = |p: &Program, state: &WideArguments| -> Vec<Option<Wide>> {
         p.run(state, &p.literals_as_floats().expect("angles of moderate size"))
@@ -79,8 +79,7 @@ fn different_entries(a: &Program, b: &Program, states: &[Arguments<f64>]) -> Vec
     a.outputs.iter().zip(different).filter(|(_, different)| *different).map(|(output, _)| output.place.clone()).collect()
 }
 
-/// Makes changes until `wanted` of them count; each must be found.
-/// The number of kinds of changes that were made and found.
+/// Makes changes until `wanted` of them count, each of which must be found. Returns the number of kinds of changes found.
 fn check(name: &str, options: &Options, wanted: usize) -> usize {
     let start = std::time::Instant::now();
     let (source, scalar) = (common::source(name), options.scalar);
@@ -109,7 +108,7 @@ fn check(name: &str, options: &Options, wanted: usize) -> usize {
     let (mut survivors, mut rounding) = (Vec::new(), 0);
     while counted < wanted && tried < 20 * wanted {
         tried += 1;
-        // Every function as often as any other, every place of it alike.
+        // Every function is equally likely, and every place of it.
         let (item, count) = places[stream.below(places.len() as u64) as usize];
         let (place, choice) = (stream.below(count as u64) as usize, stream.bits());
         let Some((text, change)) = mutable.change(item, place, choice) else { continue };
@@ -135,17 +134,17 @@ fn check(name: &str, options: &Options, wanted: usize) -> usize {
             }
             let verdict = checker.function(&change.name, &after, module.real).verdict;
             if let (Verdict::Equal, Ok(after)) = (&verdict, &after) {
-                // A change where all that is computed cancels: the function is as right as before.
+                // The effect of the change cancels: the function is as correct as before.
                 if different_entries(&before.program, &after.program, &states).is_empty() {
                     rounding += 1;
                     continue;
                 }
             }
             if let (Verdict::Different { entry, .. }, Ok(after)) = (&verdict, &after) {
-                // An entry may be wrong without a bit of it changing.
+                // An entry may be wrong although its bits are the same.
                 let mut entries = changed_entries(&before.program, &after.program, Float::F64, &states);
                 entries.extend(different_entries(&before.program, &after.program, &states));
-                // Of `base_regressor` a row is named where several of its entries may be the wrong one.
+                // For `base_regressor`, a row is named if several of its entries may be the wrong ones.
                 let named = |e: &String| e == entry || change.name == "base_regressor" && e.starts_with(entry.as_str());
                 assert!(entries.iter().any(named), "{name}: {change:?}: {entry} is named, the changed ones are {entries:?}");
             }
@@ -178,7 +177,7 @@ fn some_changes_are_found() {
     assert_eq!(check("scara4", &Options { fuse: true, ..Options::default() }, 120), 5);
 }
 
-/// What is no size of the gravity torque of its joint is none of the equations.
+/// A value that is not |g| of its joint is not one of the equations.
 #[test]
 #[ignore = "wide"]
 fn the_size_of_another_value_is_found() {
@@ -206,7 +205,7 @@ fn the_size_of_another_value_is_found() {
 fn all_changes_are_found() {
     for path in common::paths() {
         let name = path.file_stem().expect("a name").to_string_lossy().into_owned();
-        // A module of one joint has no two operands to swap.
+        // A module of a single joint has no two operands to swap.
         for scalar in [Scalar::F64, Scalar::F32] {
             assert!(
                 check(&name, &Options { scalar, ..Options::default() }, 200) >= 4,

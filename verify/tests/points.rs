@@ -1,4 +1,4 @@
-//! The random points: what they follow from, and that roots have their real signs there.
+//! The random points: their dependence on the texts, and the real signs of roots there.
 
 use crate::common;
 
@@ -74,7 +74,7 @@ fn what_has_influence_gives_other_points() {
     for (old, new) in [("5.0 * c2", "5.5 * c2"), ("5.0 * c2 + 8.766", "5.0 * c2 - 8.766"), ("sin_cos(q[1])", "sin_cos(q[0])")] {
         assert_ne!(bits(&source, &replaced(text, old, new), &claims), points, "{new}");
     }
-    // The same float stands for another number.
+    // The same float represents another number.
     let other =
         Claims::from_texts([("inertia_matrix", &["8766/1000 + 1/10^30".to_string(), "5".to_string()][..])]).expect("formulas");
     assert_ne!(bits(&source, text, &other), points);
@@ -95,7 +95,7 @@ fn odds_allow_for_tries() {
     }
 }
 
-/// a1 = sqrt(2 + sqrt(3)), a2 = sqrt(2 - sqrt(3)), so that a1 a2 = 1; a module in which it is -1 is wrong at every point.
+/// a1 = sqrt(2 + sqrt(3)), a2 = sqrt(2 - sqrt(3)), so that a1 a2 = 1. A module with a1 a2 = -1 is wrong at every point.
 #[test]
 fn roots_of_roots_have_their_real_signs() {
     let source = common::source("nest");

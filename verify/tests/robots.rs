@@ -1,4 +1,4 @@
-//! Every robot of the project is verified, in both scalars; a certificate lets anyone verify again.
+//! Verifies every robot of the project in both scalars; a certificate lets anyone verify again.
 
 use crate::common;
 
@@ -12,7 +12,7 @@ use armgen_verify::checker::Effort;
 use armgen_verify::claims::Claims;
 use armgen_verify::verify_with;
 
-/// Prints the report of each with `--nocapture`.
+/// Prints each report with `--nocapture`.
 fn check(options: &Options) {
     for path in common::paths() {
         let name = path.file_stem().expect("a name").to_string_lossy().into_owned();
@@ -51,7 +51,7 @@ fn all_robots_are_verified_with_fused_operations() {
     check(&Options { fuse: true, ..Options::default() });
 }
 
-/// No robot is left out: its inverse kinematics is certified, or the module says why there is none.
+/// Covers all robots: the inverse kinematics is certified, or the module states why it is missing.
 #[test]
 #[ignore = "wide"]
 fn the_inverse_kinematics_of_every_robot_is_certified_or_says_why_not() {
@@ -71,8 +71,8 @@ fn the_inverse_kinematics_of_every_robot_is_certified_or_says_why_not() {
     assert_eq!(without, ["counterbalance", "everything"]);
 }
 
-/// In `light` torques that may be given are a thousand times those that the arm asks for; in `lift` the rate of the shoulder, as the links
-/// beyond pass it on, cancels in the momentum of the slide along its axis.
+/// In `light` the torque limits are a thousand times the torques of the arm. In `lift` the rate of the shoulder, passed on by the following links,
+/// cancels in the momentum of the prismatic joint along its axis.
 #[test]
 fn small_torques_beside_large_limits_and_rates_that_cancel_are_no_faults() {
     for (name, text) in [("light", include_str!("arms/light.yaml")), ("lift", include_str!("arms/lift.yaml"))] {
@@ -85,7 +85,7 @@ fn small_torques_beside_large_limits_and_rates_that_cancel_are_no_faults() {
 #[test]
 #[ignore = "wide"]
 fn a_certificate_replaces_the_generator_and_belongs_to_its_texts() {
-    // An inertia turned by a general angle is a long formula.
+    // An inertia rotated by a general angle is a long formula.
     let attached = ("attached", Source::new("attached.yaml", include_str!("arms/attached.yaml")));
     let arms = ["scara", "everything", "base_set"].map(|name| (name, common::source(name)));
     for (name, source) in arms.into_iter().chain([attached]) {
@@ -151,7 +151,7 @@ fn what_answers_for_the_sines_is_known_by_its_text_and_its_use_by_the_equations(
     assert!(left_out.contains("is of none of the first 6 angles"), "{left_out}");
 }
 
-/// Whoever writes a certificate can choose what literals stand for, but not constants whose sign is free.
+/// The author of a certificate may choose exact values of literals, but cannot introduce nested roots, whose sign would be free.
 #[test]
 fn a_nested_root_that_the_description_does_not_have_is_refused() {
     let source = common::source("scara");
@@ -170,8 +170,8 @@ fn a_nested_root_that_the_description_does_not_have_is_refused() {
     assert!(fault.contains("which the description does not have"), "{fault}");
 }
 
-/// A description with nested roots, tied to each other or not: the field of the generator knows nothing of them, and nothing is folded that it
-/// would have to know.
+/// A description with nested roots, independent or not. The generator's field does not know their relations, and does not fold what would
+/// require them.
 #[test]
 fn an_arm_with_nested_roots_is_verified() {
     let text = "name: roots\nconvention: standard\ngravity: [0, -9.81, 0]\njoints:\n  \
@@ -186,7 +186,7 @@ fn an_arm_with_nested_roots_is_verified() {
     assert!(report.passed(), "{}", report.first_fault().unwrap_or_default());
 }
 
-/// An arm without mass has no equations of motion: its module is verified without them, and a function that it cannot have is refused.
+/// An arm without masses has no equations of motion: its module is verified without them, and an impossible function is refused.
 #[test]
 fn kinematics_alone_are_verified() {
     let text = include_str!("../../tests/data/kinematics_alone.yaml");

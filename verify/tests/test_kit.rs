@@ -1,4 +1,4 @@
-//! The test file for users, run as a user runs it: in a project of its own.
+//! The users' test file, run from the users' side: in a separate project.
 
 use crate::common;
 
@@ -8,7 +8,7 @@ use std::process::Command;
 use armgen_codegen::kinds::Scalar;
 use armgen_verify::test_kit;
 
-/// A user's project: the module beside its crate root, the test file in `tests`.
+/// A user's project: the module next to its crate root, the test file in `tests`.
 fn project(name: &str, module: &str, tests: &str) -> PathBuf {
     let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join("test-kit").join(name);
     std::fs::create_dir_all(folder.join("src")).expect("a folder");
@@ -23,7 +23,7 @@ fn project(name: &str, module: &str, tests: &str) -> PathBuf {
     folder
 }
 
-/// What `cargo test` says there, and whether it passed.
+/// The output of `cargo test` in it, and whether it passed.
 fn run(folder: &Path) -> (bool, String) {
     let output = Command::new(env!("CARGO"))
         .args(["test", "--offline", "--quiet"])

@@ -1,6 +1,6 @@
-//! The command `run`: experiments on a robot, or a demonstration of it.
+//! The command `run`: experiments on a robot, or a demonstration.
 //!
-//! The order: read all files; linearise every sampled loop and say which are unstable; only then move; draw; judge.
+//! The order: read all files; linearise every sampled loop and report unstable loops; then run, draw, and compare with expectations.
 
 mod page;
 
@@ -22,7 +22,7 @@ use armgen_terminal::output::place;
 use armgen_terminal::table::{Align, Table};
 use armgen_terminal::{self as terminal, input, DONE, FAULTY, UNREADABLE};
 
-/// Runs the experiments for this robot; where there are none, moves it along a demonstration.
+/// Runs the experiments for this robot, or a demonstration if there are no experiments.
 pub fn run(files: &[PathBuf], out: &Path, arm: &dyn Arm, description: &Source) -> u8 {
     let Files { experiments, others, paths, read, code } = read_all(&named(files), arm.robot());
     let built = &arm.robot().name;
@@ -46,14 +46,14 @@ pub fn run(files: &[PathBuf], out: &Path, arm: &dyn Arm, description: &Source) -
         }
     }
     match (experiments.as_slice(), code) {
-        // A file that is faulty or absent is the answer; without any there is nothing to run.
+        // The error of a faulty or missing file is the result; otherwise there is nothing to run.
         ([], DONE) => demonstrate(arm, out, description),
         ([], code) => code,
         (experiments, code) => code.max(run_all(experiments, &read, arm, out, description)),
     }
 }
 
-/// The files to run: those named, or the experiments of the working directory, in the order of their names.
+/// The files to run: the named files, or the experiments of the working directory, sorted by name.
 fn named(files: &[PathBuf]) -> Vec<PathBuf> {
     if !files.is_empty() {
         return files.to_vec();
@@ -65,19 +65,19 @@ fn named(files: &[PathBuf]) -> Vec<PathBuf> {
     found
 }
 
-/// What the files came to.
+/// The results of reading the files.
 struct Files {
     experiments: Vec<Experiment>,
-    /// Other robots that files are for, and how many.
+    /// Other robots with the number of their files.
     others: Vec<(String, usize)>,
-    /// Those that are paths.
+    /// The files that are paths.
     paths: Vec<PathBuf>,
-    /// Where all that was read is, paths of experiments included.
+    /// The locations of all files read, including paths of experiments.
     read: BTreeSet<PathBuf>,
     code: u8,
 }
 
-/// Reads all files; what is wrong with one goes to standard error.
+/// Reads all files; reports their faults on standard error.
 fn read_all(files: &[PathBuf], robot: &Robot) -> Files {
     let mut all = Files { experiments: Vec::new(), others: Vec::new(), paths: Vec::new(), read: BTreeSet::new(), code: DONE };
     let mut read: Vec<&PathBuf> = Vec::new();
@@ -129,13 +129,13 @@ fn read_all(files: &[PathBuf], robot: &Robot) -> Files {
     all
 }
 
-/// The text of a file that an experiment names. At most one byte more than the reader accepts: the reader then reports the excess, and a
-/// file without an end is not waited for.
+/// The text of a file that an experiment names. It reads at most a byte more than the limit, so the reader can report the excess and
+/// an endless file does not block.
 fn text_of(path: &Path) -> std::io::Result<String> {
     let mut bytes = Vec::new();
     std::fs::File::open(path)?.take(read::MAX_TEXT as u64 + 1).read_to_end(&mut bytes)?;
     if bytes.len() > read::MAX_TEXT {
-        // It may be cut within a character. What stands for that is no shorter, so the text is still too long.
+        // The cut may split a character. Its replacement is no shorter, so the text is still too long.
         return Ok(String::from_utf8_lossy(&bytes).into_owned());
     }
     input::decoded(bytes).map_err(|fault| std::io::Error::new(std::io::ErrorKind::InvalidData, format!("it {fault}")))
@@ -168,7 +168,7 @@ fn run_all(experiments: &[Experiment], read: &BTreeSet<PathBuf>, arm: &dyn Arm, 
     let (mut code, mut written) = (DONE, 0);
     let mut taken = BTreeSet::from(["index.html".to_owned()]);
     for OutputFile { name, text } in jobs.iter().map(Job::log).chain(jobs.iter().flat_map(Job::figures).cloned()).chain(groups) {
-        // A figure of one experiment may be called as one of another is, `a_trace` and the trace of `a`.
+        // Figures of different experiments can have the same name: `a_trace`, and the trace of `a`.
         if !taken.insert(name.clone()) || read.contains(&place(&out.join(&name))) {
             let path = out.join(name);
             terminal::error(&format!(
@@ -212,7 +212,7 @@ fn run_all(experiments: &[Experiment], read: &BTreeSet<PathBuf>, arm: &dyn Arm, 
 }
 
 fn progress(steps: u64) -> ProgressBar {
-    // Drawn on a terminal only.
+    // Visible only on a terminal.
     let bar = ProgressBar::new(steps);
     if let Ok(style) = ProgressStyle::with_template("  [{bar:30}] {pos}/{len} {elapsed}") {
         bar.set_style(style.progress_chars("=> "));
@@ -220,7 +220,7 @@ fn progress(steps: u64) -> ProgressBar {
     bar
 }
 
-/// How fast and how hard joints worked beside their limits, of those that have one; what is beyond is marked.
+/// Peak rates and efforts of the joints with limits; marks exceeded limits.
 fn peaks(jobs: &[Job<'_>], robot: &Robot) -> String {
     use Align::{Left, Right};
     let mut table = Table::new([
@@ -261,7 +261,7 @@ fn peaks(jobs: &[Job<'_>], robot: &Robot) -> String {
     }
 }
 
-/// The table of results, and whether all expectations are met.
+/// The table of results, and whether all results are as expected.
 fn report(jobs: &[Job<'_>]) -> (String, bool) {
     let columns = [
         ("experiment", Align::Left),
@@ -323,7 +323,7 @@ fn demonstrate(arm: &dyn Arm, out: &Path, description: &Source) -> u8 {
     code
 }
 
-/// A table of what each joint did and needed.
+/// A table of each joint's range, errors, peak rate and peak effort.
 fn joint_table(record: &Record, robot: &Robot) -> String {
     use Align::{Left, Right};
     let mut table = Table::new([

@@ -1,4 +1,4 @@
-//! `index.html`: the page of the robot with its experiments, their verdicts and their figures.
+//! `index.html`: the page of the robot with its experiments, results and figures.
 
 use std::path::Path;
 
@@ -48,12 +48,12 @@ pub(super) fn of_demonstration(record: &Record, robot: &Robot) -> Run {
     }
 }
 
-/// A figure with the name of its file as its title.
+/// A figure titled with its file name.
 fn figure(file: OutputFile) -> Figure {
     Figure { title: file.name, svg: file.text }
 }
 
-/// The log with the units of its channels; none of a record without samples.
+/// The log with the units of its channels; `None` for a record without samples.
 fn log(record: &Record) -> Option<Log> {
     let unit = |name: &str| {
         let channel = record.channels().iter().find(|channel| channel.name == name);
@@ -62,7 +62,7 @@ fn log(record: &Record) -> Option<Log> {
     Log::read(&record.csv(), unit).ok().filter(|_| !record.log().is_empty())
 }
 
-/// Writes the page, and says so.
+/// Writes the page and reports it.
 pub(super) fn write_index(out: &Path, description: &Source, runs: &[Run]) -> u8 {
     let file = out.join("index.html");
     let page = armgen_page::page(description, runs).ok().and_then(|(page, _)| page);

@@ -15,6 +15,7 @@ use armgen_codegen::Generated;
 use armgen_verify::certificate::Certificate;
 use armgen_verify::reader::ModuleText;
 
+use super::package::{Manifest, Package};
 use super::verify::{certificate_beside, with_spinner};
 use crate::output::{place, same_file, write};
 use crate::{companions, file_names, input, terminal, ScalarName, TrigName, DONE, FAULTY, UNREADABLE};
@@ -95,7 +96,7 @@ impl Beside {
     }
 }
 
-pub(crate) fn run(file: &Path, out: Option<&Path>, choices: &Choices, beside: &Beside) -> u8 {
+pub(crate) fn run(file: &Path, out: Option<&Path>, choices: &Choices, beside: &Beside, manifest: &Manifest) -> u8 {
     let Some(functions) = input::selection(&choices.functions) else { return UNREADABLE };
     let scalar = match choices.scalar {
         ScalarName::F64 => Scalar::F64,
@@ -108,12 +109,22 @@ pub(crate) fn run(file: &Path, out: Option<&Path>, choices: &Choices, beside: &B
         Some(TrigName::Std) => Trig::Std,
         Some(TrigName::Fast) => Trig::Fast,
     };
-    if let Some(reason) = unfit(language, scalar, trig, out, choices, beside) {
+    if manifest.package && language != Language::C {
+        terminal::error("--package goes with `--language c`: it is a package of the header for CMake and ROS 2");
+        return UNREADABLE;
+    }
+    // A package is a folder, in which the header has a name of its own.
+    let named = out.filter(|_| !manifest.package);
+    if let Some(reason) = unfit(language, scalar, trig, named, choices, beside) {
         terminal::error(&reason);
         return UNREADABLE;
     }
     if let (None, Language::Matlab) = (out, language) {
         terminal::error("a package of MATLAB is a folder of files: say where it goes, with `--out +robot`");
+        return UNREADABLE;
+    }
+    if out.is_none() && manifest.package {
+        terminal::error("--package writes a folder: name it, with `--out robot_package`");
         return UNREADABLE;
     }
     if let (None, [first, ..]) = (out, beside.flags().as_slice()) {
@@ -158,13 +169,24 @@ pub(crate) fn run(file: &Path, out: Option<&Path>, choices: &Choices, beside: &B
         terminal::error(&format!("{} is the description: it would be overwritten; name another file", out.display()));
         return UNREADABLE;
     }
-    let files = match files(&Requested { source: &source, generated: &generated, language, scalar, out, beside }) {
+    let package = manifest.package.then(|| Package::new(out, armgen_codegen::emit::c::spelled(generated.name())));
+    if let Some(reason) = package.as_ref().and_then(Package::blocked) {
+        terminal::error(&reason);
+        return UNREADABLE;
+    }
+    let header = package.as_ref().map(Package::header);
+    let out = header.as_deref().unwrap_or(out);
+    let mut files = match files(&Requested { source: &source, generated: &generated, language, scalar, out, beside }) {
         Ok(files) => files,
         Err(error) => {
             terminal::error(&error);
             return FAULTY;
         }
     };
+    if let Some(package) = &package {
+        package.complete(&mut files, &source, manifest);
+        manifest.note().iter().for_each(|note| terminal::note(note));
+    }
     if let Err(error) = write_all(&files, file, (language == Language::Matlab).then_some(out)) {
         terminal::error(&error);
         return UNREADABLE;

@@ -1,4 +1,4 @@
-//! Texts from files; why a file cannot be read goes to standard error.
+//! Texts from files, with messages on standard error about unreadable files.
 
 use std::fs::File;
 use std::io::Read;
@@ -8,22 +8,22 @@ use armgen_description::source::Source;
 
 use crate::UNREADABLE;
 
-/// The longest file that is read, in bytes.
+/// The maximum file length, in bytes.
 pub const LONGEST: usize = 32 << 20;
 
-/// What is said of a file that is too long, but for a log.
+/// The end of the message about a file that is too long, except for a log.
 pub const OTHERS_ARE_SHORT: &str = "no file that armgen reads or writes is";
 
-/// The text of a file, or the exit code after a message with the reason.
+/// The text of a file; after a message, the exit code.
 pub fn source(path: &Path) -> Result<Source, u8> {
     Ok(Source::new(path.display().to_string(), text(path, OTHERS_ARE_SHORT)?))
 }
 
-/// The text of a file as it is; why it cannot be had goes to standard error, and what is said of one that is too long.
+/// The text of a file. Reports a failure on standard error; `of_long` ends the message about a file that is too long.
 pub fn text(path: &Path, of_long: &str) -> Result<String, u8> {
     let name = path.display().to_string();
     let mut bytes = Vec::new();
-    // Never more than that, whatever the file is: a device may have no end.
+    // Read no more than this, because a device may be endless.
     let read = File::open(path).and_then(|file| file.take(LONGEST as u64 + 1).read_to_end(&mut bytes));
     read.map_err(|error| {
         crate::error(&format!("cannot read {name}: {error}"));
@@ -39,7 +39,7 @@ pub fn text(path: &Path, of_long: &str) -> Result<String, u8> {
     })
 }
 
-/// Bytes as a text, or what they are that are none.
+/// Decodes UTF-8; the error describes the first invalid line.
 pub fn decoded(bytes: Vec<u8>) -> Result<String, String> {
     String::from_utf8(bytes).map_err(|error| {
         let valid = error.utf8_error().valid_up_to();

@@ -1,6 +1,6 @@
-//! What the programs of armgen share: exit codes, standard output and error, aligned tables, files in and out.
+//! Shared parts of the armgen programs: exit codes, standard output and error, aligned tables, files.
 //!
-//! Colour only on a terminal; whoever closes the pipe early has read enough.
+//! Only terminals get colours. A reader may close the pipe early.
 
 pub mod input;
 pub mod output;
@@ -12,12 +12,12 @@ use armgen_description::diagnostic::Colour;
 
 /// Exit code: the file is valid, or the task was done.
 pub const DONE: u8 = 0;
-/// Exit code: something is wrong inside the file, or a result is not as expected.
+/// Exit code: the content of a file is faulty, or a result is not as expected.
 pub const FAULTY: u8 = 1;
-/// Exit code: a file cannot be read, is not UTF-8 or cannot be written; options that do not go together.
+/// Exit code: a file cannot be read or written or is not UTF-8, or options conflict.
 pub const UNREADABLE: u8 = 2;
 
-/// Whether a stream takes colours: a terminal that is not dumb, unless NO_COLOR is set.
+/// Whether a stream supports colours: a terminal that is not dumb, unless NO_COLOR is set.
 pub fn colour(stream: &impl IsTerminal) -> Colour {
     let refused = std::env::var_os("NO_COLOR").is_some_and(|value| !value.is_empty());
     let dumb = std::env::var_os("TERM").is_some_and(|value| value == "dumb");
@@ -28,19 +28,19 @@ pub fn colour(stream: &impl IsTerminal) -> Colour {
     }
 }
 
-/// Characters of a line where standard output is no terminal.
+/// Line width if standard output is no terminal, in characters.
 const LINE: usize = 100;
-/// No line is broken to fewer.
+/// Minimum line width.
 const SHORTEST_LINE: usize = 60;
 
-/// Characters of a line on standard output: those of the terminal, a hundred at most.
+/// Line width on standard output: the terminal's width, at most 100 characters.
 pub fn width() -> usize {
     let of_terminal =
         terminal_size::terminal_size().filter(|_| std::io::stdout().is_terminal()).map(|(width, _)| usize::from(width.0));
     of_terminal.map_or(LINE, |width| width.clamp(SHORTEST_LINE, LINE))
 }
 
-/// Bold, where the stream takes colours.
+/// Bold text, if the stream supports colours.
 pub fn bold(text: &str, stream: &impl IsTerminal) -> String {
     match colour(stream) {
         Colour::Always => format!("\u{1b}[1m{text}\u{1b}[0m"),
@@ -48,7 +48,7 @@ pub fn bold(text: &str, stream: &impl IsTerminal) -> String {
     }
 }
 
-/// Writes to standard output and gives the exit code: a reader that has gone is no fault, a full disk is.
+/// Writes to standard output and returns the exit code: a closed pipe is no error, a full disk is an error.
 pub fn print(text: &str) -> u8 {
     let mut out = std::io::stdout().lock();
     match out.write_all(text.as_bytes()).and_then(|()| out.flush()) {
@@ -61,7 +61,7 @@ pub fn print(text: &str) -> u8 {
     }
 }
 
-/// Writes to standard error; if that fails there is nobody left to tell.
+/// Writes to standard error; a failure of it has no other channel for a report.
 pub fn diagnose(text: &str) {
     let _ = std::io::stderr().lock().write_all(text.as_bytes());
 }

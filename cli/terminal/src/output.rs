@@ -1,4 +1,4 @@
-//! Files that commands write.
+//! Output files of commands.
 
 use std::fs::{File, OpenOptions};
 use std::io::{ErrorKind, Write};
@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 
 use crate::{DONE, UNREADABLE};
 
-/// Writes what was made from files, each with what it is, into another one; the exit code.
+/// Writes `text` to a file that differs from all input files (each with its description); returns the exit code.
 pub fn write_other<'f>(read: impl IntoIterator<Item = (&'f Path, &'f str)>, out: &Path, text: &str) -> u8 {
     if let Some((_, what)) = read.into_iter().find(|(file, _)| same_file(file, out)) {
         crate::error(&format!("{} is {what}: it would be overwritten; name another file", out.display()));
@@ -19,12 +19,12 @@ pub fn write_other<'f>(read: impl IntoIterator<Item = (&'f Path, &'f str)>, out:
     DONE
 }
 
-/// Whether two paths lead to one file, whatever they are called, and whether it is there or not.
+/// Whether two paths lead to the same file, which need not exist.
 pub fn same_file(a: &Path, b: &Path) -> bool {
     place(a) == place(b)
 }
 
-/// Where a path leads: the same for all paths of one file, be it there or not.
+/// The location of a path, equal for all paths of a file, which need not exist.
 pub fn place(path: &Path) -> PathBuf {
     if let Ok(place) = path.canonicalize() {
         return place;
@@ -36,7 +36,7 @@ pub fn place(path: &Path) -> PathBuf {
     }
 }
 
-/// Writes beside the file first and then renames: nobody ever finds half of it. A folder that is not there is made.
+/// Writes to a temporary file, then renames it, so that no reader finds a partial file. Creates a missing folder.
 pub fn write(path: &Path, text: &str) -> std::io::Result<()> {
     if let Some(folder) = path.parent() {
         std::fs::create_dir_all(folder)?;
@@ -55,7 +55,7 @@ pub fn write(path: &Path, text: &str) -> std::io::Result<()> {
     written
 }
 
-/// A file that was not there before, beside another one.
+/// A new file in the folder of another.
 fn new_beside(path: &Path) -> std::io::Result<(PathBuf, File)> {
     let mut number = 0;
     loop {

@@ -1,17 +1,17 @@
 //! Aligned tables in plain text.
 
-/// How a column stands.
+/// The alignment of a column.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Align {
-    /// Words.
+    /// For words.
     Left,
-    /// Counts, and numbers beside words.
+    /// For counts, and numbers among words.
     Right,
-    /// Numbers, one decimal point below the other.
+    /// For numbers: aligns their decimal points.
     Point,
 }
 
-/// Rows under a header; cells are as wide as the widest of their column.
+/// Rows below a header; each column is as wide as its widest cell.
 #[derive(Clone, Debug)]
 pub struct Table {
     columns: Vec<(String, Align)>,
@@ -30,24 +30,24 @@ impl Table {
         debug_assert_eq!(self.rows.last().map(Vec::len), Some(self.columns.len()));
     }
 
-    /// Whether a cell beyond the first of its row holds something.
+    /// Whether any cell besides the first of its row is not empty.
     pub fn says_more_than_names(&self) -> bool {
         self.rows.iter().flat_map(|row| &row[1..]).any(|cell| !cell.is_empty())
     }
 
-    /// Whether a column has something in it, so that it is shown.
+    /// Whether a column has content, so that the table shows it.
     pub fn shows(&self, column: &str) -> bool {
         let place = self.columns.iter().position(|(name, _)| name == column);
         place.is_some_and(|j| self.rows.iter().any(|row| !row[j].is_empty()))
     }
 
-    /// The table, each line indented by two and ended by a line break; no header if no column has a name, no column that is empty. What is wider than
-    /// a line comes in blocks below each other, each with the first column.
+    /// The table, with lines indented by two characters. It omits a header without names, and empty columns. A table wider than a line is
+    /// split into blocks, each with the first column.
     pub fn text(&self) -> String {
         self.within(crate::width())
     }
 
-    /// The same in lines of at most so many characters, but for a column that is wider.
+    /// The same with this line width, except for a single wider column.
     fn within(&self, most: usize) -> String {
         let header: Vec<String> = self.columns.iter().map(|(name, _)| name.clone()).collect();
         let named = header.iter().any(|name| !name.is_empty());
@@ -74,7 +74,7 @@ impl Table {
         texts.join("\n")
     }
 
-    /// Some of the columns.
+    /// The table restricted to some columns.
     fn block(&self, kept: &[usize], lines: &[&Vec<String>], widths: &[usize]) -> String {
         let mut text = String::new();
         for line in lines {
@@ -91,7 +91,7 @@ impl Table {
         text
     }
 
-    /// The rows, with blanks behind numbers that have less behind their point than others of the column.
+    /// The rows, with blanks after numbers that have fewer decimals than others in their column.
     fn with_points_aligned(&self) -> Vec<Vec<String>> {
         let mut rows = self.rows.clone();
         for j in (0..self.columns.len()).filter(|&j| self.columns[j].1 == Align::Point) {
@@ -105,7 +105,7 @@ impl Table {
     }
 }
 
-/// How many characters a number has from its point on.
+/// The number of characters from the decimal point on.
 fn from_the_point(number: &str) -> usize {
     number.find('.').map_or(0, |at| number.len() - at)
 }

@@ -1,7 +1,7 @@
-//! The C face of a module: a header, and `extern "C"` wrappers in Rust that stand beside the module's functions.
+//! The C interface of a module: a header, and `extern "C"` wrappers in Rust next to the module's functions.
 //!
-//! A C caller sees `ROBOT_function`, arrays by rows as in the module, constant where they are arguments, and the result as the last
-//! argument; a single number is returned. The same declarations stand in the header that holds the functions themselves (`standalone`).
+//! A C caller sees `ROBOT_function`, arrays by rows as in the module, constant where they are arguments, and the result as the
+//! last argument; a single number is returned. The header with the functions themselves (`standalone`) has the same declarations.
 
 mod batch;
 mod bindings;
@@ -21,21 +21,21 @@ use super::{Notes, Origin};
 use crate::catalogue::Quantity;
 use crate::program::Module;
 
-/// The two texts of the C face.
+/// The two texts of the C interface.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct CFace {
     /// The header: `robot.h` for a module in `robot.rs`.
     pub header: String,
-    /// The wrappers: `robot_c.rs`, to be included beside the functions of the module.
+    /// The wrappers: `robot_c.rs`, to be included next to the functions of the module.
     pub wrappers: String,
 }
 
-/// The C face of a module.
+/// The C interface of a module.
 pub fn print(module: &Module, origin: &Origin) -> CFace {
     CFace { header: header::header(module, origin), wrappers: bindings::wrappers(module, origin) }
 }
 
-/// The module in C alone: a header of functions that needs nothing beside it but perhaps `math.h`.
+/// The module in C alone: a header of functions that needs at most `math.h`.
 pub fn standalone(module: &Module, origin: &Origin, notes: &Notes) -> String {
     standalone::print(module, origin, notes)
 }

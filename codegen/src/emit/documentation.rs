@@ -14,15 +14,15 @@ pub(super) enum Block {
     Text(Vec<String>),
     /// A formula, with links.
     Formula(&'static str),
-    /// Lines as they stand.
+    /// Lines, verbatim.
     Verbatim(Vec<String>),
     /// Items, with links.
     List(Vec<String>),
-    /// Names and what they mean, as they stand.
+    /// Names and their meanings, verbatim.
     Table(Vec<(String, String)>),
 }
 
-/// What a link leads to.
+/// Target of a link.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Link<'a> {
     /// A function of the module.
@@ -71,10 +71,10 @@ fn argument(argument: &Argument) -> String {
     format!("{{{}}}: {}", argument.name(), argument.meaning())
 }
 
-/// What the documentation of a function says besides the words of the catalogue.
+/// Documentation of a function beyond the words of the catalogue.
 #[derive(Clone, Debug)]
 pub struct Described<'a> {
-    /// What it computes.
+    /// The quantity that it computes.
     pub quantity: &'a Quantity,
     /// Whether it takes the parameters at run time.
     pub with_parameters: bool,
@@ -98,7 +98,7 @@ pub struct Described<'a> {
     pub method: &'a str,
 }
 
-/// What the documentation of a function says.
+/// Documentation of a function.
 pub(super) fn described<'a>(function: &Function, module: &'a Module) -> Described<'a> {
     Described {
         quantity: function.quantity,
@@ -131,7 +131,7 @@ impl Described<'_> {
         format!("{}{}", self.quantity.name, if self.with_parameters { "_with" } else { "" })
     }
 
-    /// `allocates`: whether its results take memory of their own in the language; `note`: what is said behind all else.
+    /// `allocates`: whether its results take memory of their own in the language; `note`: the last paragraph.
     pub(super) fn blocks(&self, allocates: bool, note: Option<&str>) -> Vec<Block> {
         let Documentation {
             title,
@@ -183,7 +183,7 @@ impl Described<'_> {
     }
 }
 
-/// What a name of a base parameter means.
+/// Meaning of the names of base parameters.
 pub(super) fn base_note() -> Block {
     Block::Text(
         [
@@ -196,7 +196,7 @@ pub(super) fn base_note() -> Block {
     )
 }
 
-/// What a name of a base parameter of `base_regressor` means; `turn`: by how many rad the frame of the last link is turned, if it is.
+/// Meaning of the names of base parameters of `base_regressor`; `turn`: angle, rad, of the turn of the last link's frame, if any.
 pub(super) fn own_base_note(turn: Option<&str>) -> Block {
     let first = [
         "A name that ends in R is a base parameter: a standard parameter in the joint frame, whose z axis is the joint's and whose origin is where",
@@ -214,19 +214,19 @@ pub(super) fn own_base_note(turn: Option<&str>) -> Block {
     Block::Text(first.into_iter().map(String::from).chain(turned.into_iter().flatten()).collect())
 }
 
-/// By how many rad the frame of the last link is turned, if it is, as it stands in documentation.
+/// Angle, rad, of the turn of the last link's frame, if any, as text for documentation.
 pub(super) fn turn(module: &Module) -> Option<String> {
     module.turn.as_ref().map(|turn| decimal(turn, module.scalar))
 }
 
-/// What the documentation of constants says besides fixed words.
+/// Documentation of constants beyond fixed words.
 #[derive(Clone, Debug, Default)]
 pub struct DescribedParameters {
     /// Whether the parameters are base parameters.
     pub grouped: bool,
-    /// Names of the parameters and what they mean.
+    /// Names of the parameters and their meanings.
     pub parameters: Vec<(String, String)>,
-    /// Names of the base parameters of `base_regressor` and what they mean, of modules that have it.
+    /// Names of the base parameters of `base_regressor` and their meanings, in modules with this function.
     pub base_parameters: Option<Vec<(String, String)>>,
     /// By how many rad the frame of the last link is turned, if it is, as it is written.
     pub turn: Option<String>,
@@ -242,12 +242,12 @@ impl DescribedParameters {
         }
     }
 
-    /// Behind a title: what the names of parameters mean.
+    /// Meanings of the names of parameters, to follow a title.
     pub(super) fn meanings(&self) -> impl Iterator<Item = Block> + use<> {
         self.grouped.then(base_note).into_iter().chain([Block::Table(self.parameters.clone())])
     }
 
-    /// Behind a title: what the names of base parameters mean.
+    /// Meanings of the names of base parameters, to follow a title.
     pub(super) fn base_meanings(&self) -> [Block; 2] {
         [own_base_note(self.turn.as_deref()), Block::Table(self.base_parameters.clone().unwrap_or_default())]
     }
@@ -258,7 +258,7 @@ pub(super) fn has_base_parameters(module: &Module) -> bool {
     module.functions.iter().any(|function| function.quantity.has_length(Length::BaseParameters))
 }
 
-/// Names of parameters and what they mean.
+/// Names of parameters and their meanings.
 pub(super) fn named(parameters: &[Parameter]) -> Vec<(String, String)> {
     parameters.iter().map(|parameter| (parameter.name.clone(), parameter.meaning.clone())).collect()
 }

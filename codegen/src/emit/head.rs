@@ -19,7 +19,7 @@ pub(super) fn lines(origin: &Origin, notes: &[String]) -> Vec<String> {
     lines
 }
 
-/// What is known of a module only once its text is there, for its documentation: bounds of its rounding errors, say.
+/// Facts for the documentation of a module that need its text first, such as bounds of its rounding errors.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Notes {
     /// Lines for the head of the file.

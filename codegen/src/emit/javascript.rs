@@ -129,7 +129,7 @@ fn link(link: Link<'_>) -> String {
     }
 }
 
-/// A comment of JSDoc, tags behind it.
+/// A comment of JSDoc, followed by tags.
 fn comment(blocks: &[Block], tags: &[String]) -> String {
     let mut lines = documentation::plain(blocks, &link);
     if !tags.is_empty() {
@@ -145,7 +145,7 @@ pub fn constants_comments(described: &DescribedParameters) -> Vec<(&'static str,
     constants_documentation(described, 0).into_iter().map(|(name, blocks)| (name, comment(&blocks, &[]))).collect()
 }
 
-/// The comment of a function, with what is said behind all else.
+/// The comment of a function; `note` ends it.
 pub fn function_comment(described: &Described<'_>, note: Option<&str>) -> String {
     let tags = described.arguments().map(|a| format!("@param {{ArrayLike<number>}} {}", a.name()));
     let returned = |lengths: usize| format!("number{}", "[]".repeat(lengths));

@@ -1,8 +1,8 @@
-//! The module in MATLAB and Octave: a package, a folder with a file for each function. Columns of arguments are states, and the last dimension
-//! of results is that of states. Inside of a function entries are columns, so many states at a time as the processor's cache holds: a column is taken
-//! from a matrix without a copy.
+//! The module in MATLAB and Octave: a package, a folder with a file for each function. Columns of arguments are states, and the
+//! last dimension of results counts states. Inside a function entries are columns, in blocks of as many states as the processor's
+//! cache holds: MATLAB takes a column from a matrix without a copy.
 //!
-//! Every file has what it needs as local functions, so that any of them may be copied into a block of Simulink.
+//! Every file has its helpers as local functions, so that any file can be copied into a block of Simulink.
 
 use std::fmt::Write;
 
@@ -33,7 +33,7 @@ pub struct File {
     pub text: String,
 }
 
-/// The files of a package as one text, in the order of their names: in front of each stands a line with its name.
+/// The files of a package as one text, in the order of their names: a line with its name precedes each.
 pub fn joined(files: &[File]) -> String {
     let mut files: Vec<&File> = files.iter().collect();
     files.sort_by(|a, b| a.name.cmp(&b.name));
@@ -84,7 +84,7 @@ fn contents(module: &Module, head: &str) -> File {
     File { name: "Contents.m".into(), text: format!("{}\n{head}", contents_comment(&module.name, &functions)) }
 }
 
-/// What stands first in the file of contents.
+/// First comment of the file of contents.
 pub fn contents_comment(robot: &str, functions: &[(String, &Quantity)]) -> String {
     let mut rows = vec![("model".to_string(), "Names, limits and parameters.".to_string())];
     let title = |quantity: &Quantity| documentation::linked(quantity.documentation.title, &link);
@@ -144,7 +144,7 @@ fn field(constant: &str) -> String {
     camel(&constant.to_ascii_lowercase())
 }
 
-/// The line that says where a file came from.
+/// The line with the origin of a file.
 fn origin_of(head: &str) -> String {
     head.lines().next().unwrap_or_default().to_string() + "\n"
 }
@@ -172,7 +172,7 @@ fn comment(blocks: &[Block], first: &str) -> String {
     documentation::plain(blocks, &link).into_iter().enumerate().map(line).collect()
 }
 
-/// A constant as it is written: what has entries is a column, what has rows a matrix.
+/// A constant as written: entries form a column, rows a matrix.
 fn value_of(value: &Value) -> String {
     match value {
         Value::Text(text) => format!("'{text}'"),
@@ -203,7 +203,7 @@ fn results(quantity: &Quantity) -> Vec<String> {
     quantity.result.iter().map(|part| camel(part.name)).collect()
 }
 
-/// What is said of the function for a block of states.
+/// Documentation of the function for a block of states.
 pub fn block_comment(function: &str) -> String {
     format!("% `{function}` of n states, so few that they stay in the processor's cache; inside, an entry is a column.\n")
 }
@@ -243,7 +243,7 @@ fn file(module: &Module, function: &Function, head: &str, notes: &Notes) -> File
     File { name: format!("{name}.m"), text }
 }
 
-/// The lengths of a part of the result, those of a list of matrices as MATLAB has them.
+/// Lengths of a part of the result; MATLAB puts the index of a list of matrices last.
 fn lengths(module: &Module, part: &ResultPart) -> Vec<usize> {
     let lengths: Vec<usize> = part.lengths.iter().map(|length| length.of(&module.sizes())).collect();
     paged(if lengths.is_empty() { &[1] } else { &lengths })
@@ -329,7 +329,7 @@ fn block(text: &mut String, module: &Module, function: &Function, name: &str, li
     *text += "end\n";
 }
 
-/// Indices of an entry, or lengths: a list of matrices has its place in the list behind rows and columns.
+/// Indices of an entry, or lengths: the index in a list of matrices comes after row and column.
 fn paged(indices: &[usize]) -> Vec<usize> {
     let (pages, matrix) = indices.split_at(indices.len().saturating_sub(2));
     matrix.iter().chain(pages).copied().collect()

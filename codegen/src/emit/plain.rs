@@ -1,5 +1,5 @@
-//! What languages have in common whose text is put together line by line: lines, angles and the places of results are those of the
-//! program, and a language says only how it writes an entry, a number and an operator.
+//! Common part of the languages whose text is composed line by line. Lines, angles and the places of results come from the
+//! program. A language only defines how it writes an entry, a number and an operator.
 
 use super::documentation::{self, has_base_parameters, Block, Described, DescribedParameters};
 use super::{Notes, Origin};
@@ -9,7 +9,7 @@ use crate::program::listing::{angles, Angle, Expression, Name};
 use crate::program::{Function, Joint, Module, Operation};
 use crate::ring::Symbol;
 
-/// How a language writes what a line is made of.
+/// How a language writes the elements of a line.
 pub(super) trait Syntax {
     /// A constant, with its sign.
     fn number(&self, value: &Number) -> String;
@@ -17,7 +17,7 @@ pub(super) trait Syntax {
     /// The sign of an entry or of another value.
     fn sign(&self, value: &str) -> String;
 
-    /// What is left of Stribeck friction at an entry, at a velocity.
+    /// Share of Stribeck friction at an entry that remains at a velocity.
     fn stribeck(&self, entry: &str, velocity: &str) -> String;
 
     /// The product of the first two and the third, in one operation that rounds once; only programs of languages that have one hold it.
@@ -160,7 +160,7 @@ pub(super) fn asks_for_exponentials(module: &Module) -> bool {
     module.functions.iter().any(|function| !function.stribeck.is_empty())
 }
 
-/// A text that stands in the name of a robot called `robot`, for one of another name.
+/// A text written for a robot called `robot`, for a robot of another name.
 pub(super) fn of_robot(text: &str, name: &str, macros: &str) -> String {
     let pieces: Vec<String> = text.split("robot_").map(|piece| piece.replace("ROBOT_", &format!("{macros}_"))).collect();
     pieces.join(&format!("{name}_"))
@@ -193,7 +193,7 @@ pub(super) struct Constant {
     pub(super) value: Value,
 }
 
-/// The constants of a module in order, those of the base parameters last.
+/// The constants of a module in order, with the base parameters last.
 const CONSTANTS: [&str; 15] = [
     "NAME",
     "DOF",
@@ -212,7 +212,7 @@ const CONSTANTS: [&str; 15] = [
     "NOMINAL_BASE_PARAMETERS",
 ];
 
-/// The documentation of the constants that a module has; `first`: what a language counts from.
+/// The documentation of the constants of a module; `first`: first index of the language.
 pub(super) fn constants_documentation(described: &DescribedParameters, first: usize) -> Vec<(&'static str, Vec<Block>)> {
     let [a, b, c, d, e, f] = std::array::from_fn(|row| row + first);
     let said = |name: &str| {
@@ -255,7 +255,7 @@ pub(super) fn constants_documentation(described: &DescribedParameters, first: us
     CONSTANTS.into_iter().filter(|name| !name.contains("BASE_") || described.base_parameters.is_some()).map(of).collect()
 }
 
-/// The constants of a module, in order; `first`: what a language counts from.
+/// The constants of a module, in order; `first`: first index of the language.
 pub(super) fn constants(module: &Module, first: usize) -> Vec<Constant> {
     let text = |text: &String| Value::Text(text.clone());
     let number = |value: &Option<Number>, negative: bool| match value {
@@ -291,14 +291,14 @@ pub(super) fn constants(module: &Module, first: usize) -> Vec<Constant> {
     CONSTANTS.into_iter().filter(|name| !name.contains("BASE_") || has_base_parameters(module)).map(of).collect()
 }
 
-/// The lines at the head of a file, each behind the sign of a comment: where it came from, and what the module lacks.
+/// The head of a file as comment lines: its origin, and the functions that the module lacks.
 pub(super) fn head(module: &Module, origin: &Origin, notes: &Notes, sign: &str) -> String {
     let absent = module.absent.iter().map(|absent| format!("There is no `{}`: {}.", absent.function, absent.reason));
     let lines = crate::emit::head::lines(origin, &notes.head).into_iter().chain(absent);
     lines.map(|line| format!("{sign} {line}").trim_end().to_string() + "\n").collect()
 }
 
-/// What is said of a function.
+/// Documentation of a function.
 pub(super) fn described<'a>(module: &'a Module, function: &Function, notes: &'a Notes) -> (Described<'a>, Option<&'a str>) {
     (documentation::described(function, module), notes.functions.get(&function.name()).map(String::as_str))
 }

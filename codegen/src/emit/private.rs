@@ -1,10 +1,11 @@
-//! What the private functions of all languages share, whose texts are templates: numbers and polynomials of the sines, and what is said of them.
+//! Common part of the private functions of all languages, whose texts are templates: numbers and polynomials of the sines, and
+//! their documentation.
 //!
-//! `@NAME@` in a template is a number or a polynomial; a line that ends in `@NAME@` behind the sign of a comment is a paragraph.
+//! `@NAME@` in a template is a number or a polynomial; a comment line that ends in `@NAME@` is a paragraph.
 
 use crate::kinds::Scalar;
 
-/// What is said of the sign of a rate.
+/// Documentation of the sign of a rate.
 pub(super) const SIGN: &str = "Sign of a rate: 0 at rest, not a number for what is not a number.";
 
 const SINES: [&str; 5] = [
@@ -65,7 +66,7 @@ const NUMBERS: [(&str, [&str; 2]); 11] = [
     ),
 ];
 
-/// A template with what stands in it for a scalar; `rounding`: how n is rounded; `value`: how a number or a polynomial is written.
+/// A template filled in for a scalar; `rounding`: expression that rounds n; `value`: text of a number or a polynomial.
 pub(super) fn filled(template: &str, scalar: Scalar, rounding: &str, value: &dyn Fn(&str) -> String) -> String {
     let mut text = String::new();
     for line in template.lines() {

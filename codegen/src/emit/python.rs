@@ -124,7 +124,7 @@ pub fn constants_comments(described: &DescribedParameters) -> Vec<(&'static str,
     constants_documentation(described, 0).into_iter().map(|(name, blocks)| (name, comment(&blocks))).collect()
 }
 
-/// The documentation of a function, with what is said of it behind all that is said in other languages.
+/// The documentation of a function; `note` follows the text that all languages share.
 pub fn function_comment(described: &Described<'_>, note: Option<&str>) -> String {
     let mut all = described.blocks(true, note);
     all.push(Block::text("Leading axes are those of many states; `m[..., i, j]` is row i, column j."));
@@ -192,7 +192,7 @@ impl Python {
         let waves = waves(module, function, self);
         if !waves.is_empty() {
             let angles: Vec<String> = waves.iter().map(|wave| wave.angle.clone()).collect();
-            // What no line takes has no name.
+            // An unused result has no name.
             let sine = if waves.iter().any(|wave| wave.sine.is_some()) { "sine" } else { "_" };
             let cosine = if waves.iter().any(|wave| wave.cosine.is_some()) { "cosine" } else { "_" };
             let _ = writeln!(text, "    {sine}, {cosine} = _sin_cos(xp, {})", tuple(&angles));

@@ -39,7 +39,7 @@ pub fn print(module: &Module, origin: &Origin, notes: &Notes) -> String {
     Text::of(module).documented(module, origin, notes)
 }
 
-/// The text of a module, but for what notes are written into: its head and the documentation of its functions.
+/// The text of a module without the parts that receive notes: its head and the documentation of its functions.
 #[derive(Clone, Debug)]
 pub struct Text {
     before: String,
@@ -48,7 +48,7 @@ pub struct Text {
 }
 
 impl Text {
-    /// Function by function, side by side: what a formatter holds of a text is many times the text.
+    /// Functions are formatted one by one, in parallel: a formatter needs many times the memory of its text.
     pub fn of(module: &Module) -> Text {
         let real = match module.scalar {
             Scalar::F64 => quote!(f64),
@@ -82,7 +82,7 @@ impl Text {
     }
 }
 
-/// What the arm does not have, and why.
+/// Comments on the functions that the module lacks, with the reasons.
 fn absent(module: &Module) -> String {
     let line = |absent: &Absent| format!("// There is no `{}`: {}.\n", absent.function, absent.reason);
     let lines: String = module.absent.iter().map(line).collect();
@@ -93,7 +93,7 @@ fn absent(module: &Module) -> String {
     }
 }
 
-/// The implementation of the runtime's traits for the module, as text for a file beside it.
+/// The implementation of the runtime's traits for the module, as text for a separate file.
 pub fn print_runtime(module: &Module, origin: &Origin) -> String {
     let lacking = runtime::lacking(module);
     let line = |(interface, functions): &(&str, Vec<String>)| {
@@ -104,7 +104,7 @@ pub fn print_runtime(module: &Module, origin: &Origin) -> String {
     head(origin, &[]) + &notes + &runtime::implementation(module).map_or_else(String::new, format)
 }
 
-/// The comment that says where a file came from, and notes below it.
+/// The comment with the origin of a file, and notes below it.
 pub(in crate::emit) fn head(origin: &Origin, notes: &[String]) -> String {
     crate::emit::head::lines(origin, notes)
         .iter()
@@ -216,7 +216,7 @@ fn constants(module: &Module) -> TokenStream {
     }
 }
 
-/// The documentation of a function, as it stands in a module without bounds.
+/// The documentation of a function in a module without error bounds.
 #[doc(hidden)]
 pub fn function_documentation(described: &Described<'_>) -> Vec<String> {
     documentation::lines(&described.blocks(false, None))
@@ -265,7 +265,7 @@ fn base_constants(module: &Module, documented: &[(&'static str, Vec<String>)]) -
     })
 }
 
-/// A function without its documentation, and its parts; whether barriers stand in it.
+/// A function without its documentation, with its parts; and whether it has barriers.
 fn function(module: &Module, function: &Function) -> (String, bool) {
     let (ignored, sines) = (ignored(function), sincos::lines(module, function));
     let (body, first, sizes) = (body::body(module, function), quote!(#ignored #(#sines)*), module.sizes());
@@ -317,8 +317,8 @@ pub(in crate::emit) fn asks_for_sines(module: &Module) -> bool {
     module.functions.iter().flat_map(Function::symbols).any(|symbol| symbol.angle().is_some())
 }
 
-/// Sine and cosine, the sign of a rate, what is left of Stribeck friction and the barrier: what functions call besides their parts and those that
-/// write their results.
+/// Functions that emitted functions call besides their parts and result writers: sine and cosine, the sign of a rate, the share
+/// of Stribeck friction, and the barrier.
 fn private_block(module: &Module, has_barriers: bool) -> TokenStream {
     let sin_cos = asks_for_sines(module).then(|| sincos::functions(module));
     let sign = asks_for_signs(module).then(|| {

@@ -1,7 +1,7 @@
 use super::*;
 use crate::diagnostic::Colour;
 
-/// A one-joint arm; `edits` replace parts of it, and what is not found is appended.
+/// A one-joint arm; `edits` replace parts of it, and an edit without a match is appended.
 fn arm(edits: &[(&str, &str)]) -> String {
     let mut text = "name: arm\nconvention: standard\ngravity: [0, 0, -9.81]\nparameters: {}\njoints:\n  - name: shoulder\n    \
                     type: revolute\n    a: 0.5\n    alpha: pi/2\n    d: 0.25\n    theta: 0\n    link: {mass: 2}\n"
@@ -30,7 +30,7 @@ fn valid(text: &str) -> (Manipulator, Places) {
 fn check(text: &str, codes: &[Code]) {
     let source = Source::new("robot.yaml", text);
     let (read, diagnostics) = read(&source);
-    // The numbers of these texts are not those of arms.
+    // The numbers of these texts are not realistic for arms.
     let of_values = |code: &Code| *code >= Code::ImplausibleReach;
     let found: Vec<_> =
         diagnostics.iter().map(|d| d.code).filter(|c| !Code::ALL.iter().any(|v| *c == *v && of_values(v))).collect();

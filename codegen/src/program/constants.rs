@@ -8,11 +8,11 @@ use crate::exact::Number;
 use crate::parallel::parallel_map;
 
 impl Module {
-    /// The constants of each function by its name, one for each literal in the order of the text and without its sign, so that it is known
-    /// which of two that round to one float a literal stands for; and the nominal parameters as `NOMINAL_PARAMETERS`.
+    /// The constants of each function by its name: one for each literal in the order of the text, without its sign. So a literal is traced to
+    /// its exact constant even if two constants round to the same float. `NOMINAL_PARAMETERS` holds the nominal parameters.
     pub fn constants(&self) -> BTreeMap<String, Vec<Number>> {
         let of_function = |function: &Function| {
-            // Angles stand in front.
+            // Angles come first.
             let angles = angles(&function.symbols());
             let turns = angles.iter().filter(|angle| angle.turned).filter_map(|_| self.turn.as_ref());
             let listing = Listing::of(function);

@@ -1,4 +1,4 @@
-//! What a function costs, counted in operations.
+//! Cost of a function, counted in operations.
 
 use std::collections::BTreeSet;
 

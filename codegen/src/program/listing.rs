@@ -1,12 +1,12 @@
-//! A function as lines to print, in no language: what is written alike in all of them.
+//! A function as lines to print, in the form that all languages share.
 //!
-//! A step that is used once stands inside the step that uses it, as long as the line stays short; every other has a line and a name,
-//! `t1`, `t2` and so on. Brackets stand where the order of operations needs them and nowhere else, so that the same line means the same
-//! operations in the same order wherever `+ - * /` bind as usual.
+//! A step that is used once is inlined into the step that uses it, as long as the line stays short. Every other step has a line
+//! and a name, `t1`, `t2` and so on. Brackets appear only where the order of operations needs them, so that the same line means
+//! the same operations in the same order wherever `+ - * /` bind as usual.
 //!
-//! A compiler takes more than twice the time for twice the straight line: scheduling, vectorising and the choice of registers look at a
-//! block as a whole. A body of more than `LONG` lines therefore is taken apart into several functions, each of which takes the values
-//! that it needs and returns those that later ones need; names stay what they would be in one piece.
+//! The compile time of a straight line grows faster than its length: scheduling, vectorising and register allocation look at a
+//! block as a whole. So a body of more than `LONG` lines is split into several functions. Each takes the values that it needs and
+//! returns the values that later functions need. Names stay the same as in one piece.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -15,7 +15,7 @@ use crate::catalogue::Argument;
 use crate::exact::Number;
 use crate::ring::{AngleSum, Symbol};
 
-/// Steps with one use are written inside the step that uses them, up to so many operands in a line.
+/// Steps with one use are inlined into the step that uses them, up to this many operands in a line.
 const OPERANDS_IN_A_LINE: usize = 6;
 
 /// A body of more lines than this is taken apart.
@@ -50,11 +50,11 @@ pub enum Expression {
     Operation(Operation, Box<Expression>, Box<Expression>),
     /// The product of the first two and the third, added to it in one operation that rounds once.
     Fused(Box<[Expression; 3]>),
-    /// The sign of what is inside.
+    /// The sign of the inner expression.
     Sign(Box<Expression>),
-    /// What is inside, negated.
+    /// The inner expression, negated.
     Negation(Box<Expression>),
-    /// What is inside, in brackets.
+    /// The inner expression, in brackets.
     Brackets(Box<Expression>),
 }
 
@@ -63,7 +63,7 @@ pub enum Expression {
 pub struct Line {
     /// The number of its name.
     pub name: usize,
-    /// What it is.
+    /// Its value.
     pub value: Expression,
 }
 
@@ -146,7 +146,7 @@ impl Name {
     }
 }
 
-/// As many characters of a name C and MATLAB tell from others.
+/// C and MATLAB distinguish names by this many characters.
 const LONGEST_NAME: usize = 63;
 
 /// The joints of a sum, counted from 1; as sets of bits where a name of them would be too long: of 24 joints and more.
@@ -195,7 +195,7 @@ impl Function {
             || self.symbols().iter().any(|symbol| matches!(symbol, Symbol::RateSign(_)))
     }
 
-    /// The arguments that its lines use, in order: those of which only sines and cosines are used not among them.
+    /// The arguments that its lines use directly, in order; an argument that only enters through its sine or cosine is not among them.
     pub fn used_arguments(&self) -> Vec<Argument> {
         let symbols = self.symbols();
         let used = |a: Argument| symbols.iter().any(|&s| Argument::of(s) == a && s.angle().is_none());
@@ -274,7 +274,7 @@ impl Expression {
         Expression::Negation(Box::new(if bare { self } else { Expression::Brackets(Box::new(self)) }))
     }
 
-    /// A product and what is added to it, or taken away, as one operation; `self` is the product.
+    /// A product and an added or subtracted term as one operation; `self` is the product.
     fn fused(self, operation: Operation, product_is_left: bool, mut other: Expression) -> Expression {
         let Expression::Operation(_, left, right) = self else { unreachable!("a product that a sum takes is an operation") };
         let [mut left, right] = [left, right].map(|factor| match *factor {
@@ -420,7 +420,7 @@ impl Listing {
         constants
     }
 
-    /// How many lines stand before the last one that these entries use, that one included.
+    /// Number of lines up to and including the last line that these entries use.
     pub fn lines_before(&self, entries: &[usize]) -> usize {
         let of_line = |name: &Name| match name {
             Name::Step(line) => Some(*line),
@@ -434,7 +434,7 @@ impl Listing {
         if self.lines.len() <= LONG {
             return Vec::new();
         }
-        // Where each name is used last: beyond the last part for what the result needs.
+        // The part that uses each name last; names that the result needs last beyond every part.
         let values = |chunk: &[Line]| names(chunk.iter().map(|line| &line.value));
         let mut last_use: BTreeMap<Name, usize> = BTreeMap::new();
         for (part, chunk) in self.lines.chunks(PART).enumerate() {

@@ -18,7 +18,7 @@ pub struct UnknownFunctions {
 }
 
 impl fmt::Display for UnknownFunctions {
-    /// A line for each name, with what comes close.
+    /// A line for each name, with similar names.
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         for (i, name) in self.names.iter().enumerate() {
             write!(f, "{}{}", if i > 0 { "\n" } else { "" }, complaint(name))?;

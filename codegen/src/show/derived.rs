@@ -1,4 +1,4 @@
-//! The entries of an item, derived by the recursion over the links, before they have a form; or why there are none.
+//! The entries of an item, derived by the recursion over the links, before they have a form; or why they are missing.
 
 use crate::catalogue::quantities::regressor::{KNOWN_TORQUE, REGRESSOR};
 use crate::catalogue::Quantity;
@@ -16,10 +16,10 @@ use crate::Model;
 
 use super::{Item, Reading};
 
-/// What is shown of an item, before it has a form.
+/// The content of an item, before it has a form.
 pub(super) struct Derived {
     pub(super) derivation: Derivation,
-    /// Of the determinant.
+    /// Factors of the determinant.
     pub(super) factored: Option<Factored>,
 }
 
@@ -27,11 +27,11 @@ pub(super) struct Derived {
 pub(super) enum Factored {
     /// Its closed form where it is short, and its factors.
     Determinant(Option<NormalForm>, Vec<Factor>),
-    /// The factors that all minors share, and what is left of each.
+    /// The common factors of all minors, and the remaining factor of each.
     Minors(Vec<Factor>, Vec<Product>),
 }
 
-/// The entries of an item, or why there is none.
+/// The entries of an item, or why they are missing.
 pub(super) fn derived(model: &Model, item: Item, reading: Reading) -> Result<Derived, String> {
     let view = match (item, reading) {
         (Item::With(_), _) => View::Vector(&model.parameters),
@@ -66,7 +66,7 @@ pub(super) fn derived(model: &Model, item: Item, reading: Reading) -> Result<Der
 
 /// Y or the known rest with all names of the description as symbols: Y_k = ∂tau/∂name_k, and the rest is tau - Y pi.
 ///
-/// None where the rest of a base parameter set is asked for: its combinations hold the description's numbers.
+/// `None` for the known torque of a base parameter set: its combinations hold the description's numbers.
 fn symbolic_regressor(model: &Model, quantity: &Quantity) -> Option<Derivation> {
     let (manipulator, vector) = (&model.manipulator, &model.parameters);
     let mut pool = Pool::new(model.field.clone());
@@ -102,7 +102,7 @@ fn symbolic_regressor(model: &Model, quantity: &Quantity) -> Option<Derivation> 
     Some(Derivation { pool, entries, method: "derivatives by the names", parallel: Vec::new() })
 }
 
-/// Where a reader sees whether a posture is singular if no formula says so.
+/// Refers to the page that checks a posture for singularity where no formula does.
 pub const ASK_THE_PAGE: &str =
     "`armgen page ROBOT.yaml --out robot.html` shows w = sqrt(det(J J')) at any posture, 0 where J loses rank";
 

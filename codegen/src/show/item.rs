@@ -9,7 +9,7 @@ pub enum Item {
     Plain(&'static Quantity),
     /// Its form with the parameters as arguments.
     With(&'static Quantity),
-    /// Of a function that returns a list of matrices one of these, by index: the frame of a link.
+    /// One matrix, by index, of a function that returns a list of matrices: the frame of a link.
     Element(&'static Quantity, usize),
     /// The determinant of the task Jacobian.
     Determinant,
@@ -19,13 +19,13 @@ pub enum Item {
 pub(super) const DETERMINANT: &str = "determinant";
 
 impl Item {
-    /// All that is shown where nothing is asked for: every function but those that only gather others, and the determinant.
+    /// The default selection: the determinant and every function except those that only gather others.
     pub fn all() -> Vec<Item> {
         let functions = catalogue::quantities().filter(|quantity| quantity.gathers.is_empty()).map(Item::Plain);
         functions.chain([Item::Determinant]).collect()
     }
 
-    /// Whether it is said of an arm that lacks it, asked or not.
+    /// Whether its absence is reported even if it was not requested.
     pub(super) fn said_missing(self) -> bool {
         match self {
             Item::Plain(quantity) | Item::Element(quantity, _) | Item::With(quantity) => quantity.documentation.said_missing,
@@ -33,7 +33,7 @@ impl Item {
         }
     }
 
-    /// What a name stands for; nothing if it is no name of a quantity of an arm with `dof` joints.
+    /// The items of a name; empty if an arm with `dof` joints has no quantity of this name.
     pub fn named(name: &str, dof: usize) -> Vec<Item> {
         if name == DETERMINANT {
             return vec![Item::Determinant];
@@ -50,13 +50,13 @@ impl Item {
         parts.iter().map(|&quantity| if with { Item::With(quantity) } else { Item::Plain(quantity) }).collect()
     }
 
-    /// Every name that [`Item::named`] knows, but those of single matrices of a list.
+    /// Every name that [`Item::named`] knows, except names of single matrices of a list.
     pub fn names() -> Vec<String> {
         let forms = [false, true].into_iter().flat_map(|with| catalogue::functions().filter(move |(_, form)| *form == with));
         forms.map(|(quantity, with)| quantity.function_name(with)).chain([DETERMINANT.to_string()]).collect()
     }
 
-    /// What the names of single matrices of a list begin with, before an underscore and a number from 1 to that of the joints.
+    /// Prefixes of the names of single matrices of a list; an underscore and the number of a joint, from 1, follow.
     pub fn lists() -> Vec<&'static str> {
         catalogue::quantities().filter_map(element_of).map(|element| element.name).collect()
     }

@@ -1,10 +1,9 @@
 //! For programs: `{"robot", "quantities": [{"name", "symbol", "rows", "columns", "entries", "form", "steps"}]}`.
 //!
-//! `entries` are plain formulas by rows; `form` is `closed`, or `program`, and then `steps` are pairs of name and formula, none where an
-//! entry alone is shorter with its factors.
-//! The determinant also has `factors`, whose product it is, and `singular`, where each is zero: null where more than one joint decides.
-//! With one joint more than rows its entries are what is left of the minors, the determinants of J without each column, once their
-//! `common_factors` are taken out; `singular` then belongs to these.
+//! `entries` are plain formulas by rows. `form` is `closed` or `program`; the `steps` of a program are pairs of name and formula,
+//! empty where an entry alone is shorter with its factors. The determinant also has `factors`, whose product it is, and
+//! `singular`, where each is zero: null where more than one joint decides. With one joint more than rows, its entries are the
+//! minors (the determinants of J without each column) divided by their `common_factors`; `singular` then belongs to these.
 
 use serde::ser::{Serialize, SerializeStruct, Serializer};
 

@@ -14,13 +14,13 @@ use crate::ring::print::Notation;
 
 /// Width of a displayed line, pt: that of the class `article` is 345.
 const WIDTH: usize = 330;
-/// What a line begins with where it is not the first of its formula, pt.
+/// Indentation of the second and later lines of a formula, pt.
 const INDENT: usize = 14;
 
-/// A `bmatrix` of amsmath has at most so many columns.
+/// A `bmatrix` of amsmath has at most this many columns.
 const MATRIX_COLUMNS: usize = 10;
 
-/// An aligned block holds so many lines: it cannot be broken between pages.
+/// An aligned block holds at most this many lines: it cannot be broken between pages.
 const LINES: usize = 24;
 
 impl Sheet {
@@ -54,7 +54,7 @@ impl Shown {
         format!("\\noindent ${}$ is the product of\n{factors}multiplied out:\n{body}", self.symbol[1])
     }
 
-    /// The minors: the factors that they share, and what is left of each.
+    /// The minors: their common factors, and the rest of each.
     fn latex_of_minors(&self, left: &[Product], formulas: &Formulas) -> String {
         let Words { head, where_lost } = self.words(left, Notation::Latex);
         let names = self.equal_minors(left, |k| self.latex_entry_name(k, 0));
@@ -83,7 +83,7 @@ impl Shown {
     fn matrix(&self, formulas: &Formulas) -> Option<String> {
         let measure = measure(Notation::Latex);
         let widths = (0..self.columns).map(|j| formulas.entries.iter().skip(j).step_by(self.columns).map(|e| measure(e)).max());
-        // Columns are 10 pt apart, and the symbol stands before them.
+        // Columns are 10 pt apart, and the symbol precedes them.
         let width = widths.map(|w| w.unwrap_or(0) + 10).sum::<usize>() + measure(&self.symbol[1]) + 24;
         if !self.is_closed() || width > WIDTH || self.columns > MATRIX_COLUMNS || self.column_names.is_some() {
             return None;
@@ -148,7 +148,7 @@ impl Shown {
 /// Formulas with their names, a line each or, where they are long, several, in blocks.
 fn named(all: &[(String, &str)]) -> String {
     let mut lines: Vec<String> = Vec::new();
-    // Formulas stand behind the longest of the names.
+    // Formulas start after the longest name.
     let names = all.iter().map(|(name, _)| measure(Notation::Latex)(name)).max().unwrap_or(0) + 14;
     for (name, formula) in all {
         for (k, piece) in broken(formula, Notation::Latex, WIDTH.saturating_sub(names + INDENT)).iter().enumerate() {

@@ -90,7 +90,7 @@ fn breaks(formula: &str, mut depth: usize, notation: Notation) -> Vec<Break> {
             Notation::Text => c == '*' || c == '/',
             Notation::Latex => rest.starts_with("\\,"),
         };
-        // A part begins with what it was broken before.
+        // A break comes before a sign or factor, which begins the next part.
         if at > 0 && braces == 0 && (sign || factor) {
             found.push(Break { at, depth, level: 2 * depth + usize::from(factor) });
         }
@@ -153,7 +153,7 @@ fn points(formula: &str) -> usize {
     width
 }
 
-/// What stands in the braces with which a text begins, and what follows them.
+/// Content of the braces at the beginning of a text, and the rest after them.
 fn group(text: &str) -> (&str, &str) {
     let mut depth = 0usize;
     for (at, c) in text.char_indices() {

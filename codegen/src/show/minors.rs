@@ -1,4 +1,4 @@
-//! The minors of a task Jacobian with one column more than rows: the factors that they share, then what is left of each, equal ones once.
+//! The minors of a task Jacobian with one column more than rows: their common factors, then the rest of each, equal ones once.
 //!
 //! ```text
 //! D_k = f_1 f_2 ... d_k
@@ -39,14 +39,14 @@ pub(super) fn formula(product: &Product, printer: &Printer<'_>) -> String {
 
 /// The minors of one quantity in words, by notation.
 pub(super) struct Words {
-    /// What the minors are, before the factors that they share or, where there are none, before what is left of them.
+    /// Introduces the minors, before their common factors, or before the minors if they share none.
     pub(super) head: String,
-    /// Where J loses rank, before what is left of them.
+    /// Where J loses rank; comes before the minors without their common factors.
     pub(super) where_lost: String,
 }
 
 impl Shown {
-    /// What is said of the minors.
+    /// Text about the minors.
     pub(super) fn words(&self, left: &[Product], notation: Notation) -> Words {
         let shared = self.factors.is_some();
         let math = |text: &str, latex: &str| match notation {
@@ -75,7 +75,7 @@ impl Shown {
         Words { head, where_lost: format!("{j} {where_lost}") }
     }
 
-    /// What is left of the minors, by its names: equal ones together, each with a sign by which it is the formula that follows; zeros last.
+    /// The minors without their common factors, by name. Equal minors share a formula, each with its sign; zeros come last.
     pub(super) fn equal_minors(&self, left: &[Product], name: impl Fn(usize) -> String) -> Vec<(String, usize)> {
         let mut groups: Vec<(String, usize)> = Vec::new();
         for (k, product) in left.iter().enumerate() {

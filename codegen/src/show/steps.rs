@@ -1,4 +1,5 @@
-//! Expressions as numbered steps: what is used more than once gets a name, what is used once is written where it is used, up to a length.
+//! Expressions as numbered steps: a subexpression used more than once gets a name; up to a certain length, a subexpression used
+//! once is inlined.
 
 use std::borrow::Cow;
 use std::rc::Rc;
@@ -9,7 +10,7 @@ use crate::exact::Number;
 use crate::ring::print::{Notation, Printer};
 use crate::ring::{ExprId, Node};
 
-/// A step that is used once is written inside the one that uses it, up to so many operands.
+/// A step that is used once is inlined into the step that uses it, up to this many operands.
 const OPERANDS_IN_A_STEP: usize = 6;
 
 /// A product: an exact coefficient, and factors as they are printed, with their powers.
@@ -19,7 +20,7 @@ struct Term {
     factors: Vec<(Rc<str>, i32)>,
 }
 
-/// What is written for a node: a sum of products, so that equal terms are collected, constants multiplied, and signs taken in.
+/// Text of a node: a sum of products with equal terms collected, constants multiplied and signs absorbed.
 #[derive(Clone)]
 struct Text(Vec<Term>);
 

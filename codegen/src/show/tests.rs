@@ -1,4 +1,4 @@
-//! What is shown of small arms, in each notation.
+//! Output for small arms, in each notation.
 
 use super::*;
 use crate::catalogue::Absent;
@@ -72,7 +72,7 @@ fn an_entry_too_long_for_a_closed_form_becomes_steps() {
 
 #[test]
 fn no_name_means_two_things() {
-    // Seven joints: the frame's entries t11..t44 beside more than eleven steps.
+    // Seven joints: the frame's entries t11..t44 next to more than eleven steps.
     let row = "type: revolute, a: 0, alpha: 1, d: 1, theta: 0, link: {mass: 1, inertia: {xx: 1, yy: 1, zz: 1}}";
     let joints: String = (1..=7).map(|i| format!("  - {{name: j{i}, {row}}}\n")).collect();
     let arm = format!("name: arm\nconvention: standard\ngravity: [0, 0, -9.81]\njoints:\n{joints}");
@@ -278,7 +278,7 @@ fn minors_of_shoulder_elbow_and_wrist_share_the_sine_of_the_elbow() {
     assert_eq!(json["entries"][5], serde_json::json!(["84*sin(q2)*sin(q4)*sin(q5)*sin(q6)"]));
 }
 
-/// sin q q̇ would be taken for the sine of a product.
+/// sin q q̇ would read as the sine of a product.
 #[test]
 fn typeset_functions_stand_behind_other_factors() {
     let scara = include_str!("../../../robots/scara.yaml");

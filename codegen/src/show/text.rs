@@ -61,7 +61,7 @@ impl Shown {
         }
     }
 
-    /// The minors: the factors that they share, and what is left of each.
+    /// The minors: their common factors, and the rest of each.
     fn text_of_minors(&self, left: &[Product], formulas: &Formulas) -> String {
         let Words { head, where_lost } = self.words(left, Notation::Text);
         let title = format!("{}: {head}\n{}{where_lost}\n", self.name, self.text_factors());

@@ -92,7 +92,7 @@ pub(crate) fn made_up() -> Vec<(&'static str, &'static str, usize, String)> {
             4,
             &[(R, "0.2", "0.9", "0.3", "0.1"), (R, elbow, "-1.1", "0.1", "0"), (P, "0.1", quarter, "0.05", "0.3")],
         ),
-        // One joint too many for a position: those of an elbow behind a turning base given; axes that are not related.
+        // One joint too many for a position: an elbow after a turning base with given joints; unrelated axes.
         arm(
             "position4r",
             "task: [x, y, z]",
@@ -175,7 +175,7 @@ pub(crate) fn made_up() -> Vec<(&'static str, &'static str, usize, String)> {
             2,
             &[(R, "0.5", "0", "0", "0"), (R, "0.4", "0", "0", "0.2"), (R, "0.3", "0", "0", "0")],
         ),
-        // A spherical wrist behind three axes that are not related, with angles that are no fractions of a turn.
+        // A spherical wrist after three unrelated axes, with angles that are no fractions of a turn.
         arm(
             "pieper",
             "",

@@ -1,4 +1,4 @@
-//! Inverse kinematics in C beside that in Rust: the same verdicts, branches and bits.
+//! Compares inverse kinematics in C with Rust: the same verdicts, branches and bits.
 
 use std::path::{Path, PathBuf};
 use std::process::Command;
@@ -60,7 +60,7 @@ fn arms(wanted: impl Fn(&str) -> bool) -> Vec<Arm> {
     arms
 }
 
-/// Compiles both and compares what they find at so many poses: random ones, on folds, out of reach, not finite.
+/// Compiles both and compares their solutions at this many poses: random, on folds, out of reach, not finite.
 fn compare(folder: &Path, arms: &[Arm], compilers: &[(&str, &[&str])], poses: usize) {
     let write = |path: &str, text: &str| std::fs::write(folder.join(path), text).expect("a file can be written");
     write("Cargo.lock", &std::fs::read_to_string(workspace().join("Cargo.lock")).expect("the lock file"));
@@ -156,7 +156,7 @@ fn comments_speak_of_what_c_has() {
     }
 }
 
-/// A robot `arm` with inverse kinematics beside one that is called `arm_ik`, as the first one's header is.
+/// A robot `arm` with inverse kinematics, next to a robot `arm_ik`, which has the name of the first one's header.
 #[test]
 fn no_guard_is_that_of_another_robot() {
     if !there("gcc") {
@@ -186,7 +186,7 @@ fn modules_in_c_have_the_bits_of_rust() {
     compare(&folder, &arms(|name| chosen.contains(&name)), &[("gcc", &["-O1"])], 2000);
 }
 
-/// Every class, every compiler, flags that fuse multiplications where they may; C++, and compilers that are asked for fast-math.
+/// Every class, every compiler, C++, flags that fuse multiplications where allowed, and compilers with fast-math.
 ///
 /// `cargo test --release -p armgen-codegen --test all -- --ignored --nocapture every_class_in_c_has_the_bits_of_rust`.
 #[test]
@@ -214,7 +214,7 @@ fn every_class_in_c_has_the_bits_of_rust() {
     }
 }
 
-/// The caller that stands in the documentation prints what stands below it, and the test that is written beside a module passes.
+/// The program in the documentation prints the documented output, and the test emitted with a module passes.
 #[test]
 #[ignore = "wide"]
 fn the_caller_of_the_documentation_runs() {

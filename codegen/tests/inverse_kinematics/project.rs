@@ -89,7 +89,7 @@ impl Project {
         (check, solve)
     }
 
-    /// What the judge says of all.
+    /// The report of the judge on all modules.
     pub(crate) fn run(self) -> String {
         self.write("src/main.rs", &format!("{}\nfn main() {{\n{}}}\n", self.main, self.checks));
         let cargo = std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into());

@@ -47,7 +47,7 @@ pub(crate) fn ranges(smallest: f64, largest: f64) -> Vec<(String, Range)> {
 }
 
 impl Range {
-    /// About so many arguments, floats of the format.
+    /// About `count` arguments, floats of the format.
     pub(crate) fn arguments(self, count: usize, largest: f64, format: Format) -> Vec<f64> {
         let single = format.is(F32);
         let mut random = Random(1);

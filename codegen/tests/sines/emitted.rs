@@ -1,4 +1,4 @@
-//! The emitted text, as it stands in an emitted module.
+//! The emitted text, unchanged from an emitted module.
 
 pub(crate) mod f64 {
     include!("../../src/emit/rust/sincos/fast_f64.rs");

@@ -1,7 +1,7 @@
 //! Sine and cosine to more than 200 bits, in integers scaled by 2^320, and errors in units in the last place.
 //!
-//! x = n pi/2 + j/64 + t with |t| <= 1/128: the sines of j/64 stand in a table, those of t are Taylor's series, the addition theorem joins them.
-//! pi/2 comes from Machin's formula. An angle that small that 2^-320 says too little of it has its own series, relative to the angle.
+//! x = n pi/2 + j/64 + t with |t| <= 1/128. A table holds the sines of j/64, Taylor's series gives the sines of t, and the addition theorem
+//! joins them. pi/2 comes from Machin's formula. An angle too small for a resolution of 2^-320 has its own series, relative to the angle.
 
 use dashu_int::ops::{Abs, BitTest, DivEuclid};
 use dashu_int::IBig;
@@ -32,7 +32,7 @@ impl Format {
         self.bits == other.bits
     }
 
-    /// So many bits, and any exponent.
+    /// A significand of this many bits, and any exponent.
     #[allow(dead_code)] // The table of errors does without.
     pub(crate) fn of_bits(bits: isize) -> Format {
         Format { bits, smallest: isize::MIN / 4 }

@@ -1,4 +1,4 @@
-//! Postures of the arm with the ellipsoids of velocity and force, seen at right angles to a plane.
+//! Postures of the arm with velocity and force ellipsoids, projected onto a plane.
 
 use armgen_runtime::manipulability::Ellipsoid;
 use armgen_runtime::task::Row;
@@ -7,7 +7,7 @@ use super::plot::{figure, style, Panel, Series};
 use super::svg::{Stroke, INK};
 use crate::model::{Posture, Postures, Shape, Shapes};
 
-/// The ellipse about a point, its semi-axes times `scale`.
+/// The ellipse around a point, with its semi-axes multiplied by `scale`.
 fn ellipse(centre: (f64, f64), ellipsoid: &Ellipsoid<f64, 2>, scale: f64) -> Vec<(f64, f64)> {
     let (a, u) = (&ellipsoid.semi_axes, &ellipsoid.directions);
     let point = |k: usize| {
@@ -24,7 +24,7 @@ fn links(plane: [Row; 2], shape: &Shape) -> Vec<(f64, f64)> {
     shape.points.iter().map(|p| (p[a], p[b])).collect()
 }
 
-/// The force ellipsoid, where it is of a size that can be shown.
+/// The force ellipsoid, if its size is drawable.
 fn force(shape: &Shape) -> Option<&Ellipsoid<f64, 2>> {
     shape.force.as_ref().filter(|force| force.semi_axes.max() < 1e6)
 }
@@ -36,7 +36,7 @@ fn axes(plane: [Row; 2]) -> ((String, String), (String, String)) {
     (x, y)
 }
 
-/// Each posture with both ellipsoids; their scales stand in the legends.
+/// Each posture with both ellipsoids; the legends give their scales.
 pub(super) fn postures(title: &str, postures: &Postures, shapes: &Shapes) -> String {
     const VELOCITY: f64 = 0.25;
     let panels: Vec<Panel> = postures
@@ -62,7 +62,7 @@ pub(super) fn postures(title: &str, postures: &Postures, shapes: &Shapes) -> Str
                 stroke: style(0),
             });
             if let Some(f) = force(shape) {
-                // The longer semi-axis fits beside the arm: a round scale below 0.6 m.
+                // The longer semi-axis fits next to the arm: a round scale below 0.6 m.
                 let wanted = 0.6 / f.semi_axes.max();
                 let power = 10f64.powf(wanted.log10().floor());
                 let scale = [5.0, 2.0, 1.0].into_iter().map(|m| m * power).find(|s| *s <= wanted).unwrap_or(power);

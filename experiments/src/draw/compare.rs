@@ -7,7 +7,7 @@ use crate::model::{Body, ClikRun, ControlRun, Experiment, JointQuantity, Quantit
 /// A member of a group: its name, its run, its record.
 type Member<'m, T> = (&'m str, &'m T, &'m Record);
 
-/// The comparison of a group whose members are all of one kind; `None` for another one.
+/// The comparison of a group whose members are of the same kind; otherwise `None`.
 pub(super) fn group(group: &str, members: &[(&Experiment, &Record)], robot: &Robot) -> Option<String> {
     let recorded = members.iter().all(|(_, record)| record.log().len() > 1);
     if !recorded {
@@ -18,7 +18,7 @@ pub(super) fn group(group: &str, members: &[(&Experiment, &Record)], robot: &Rob
         (_, Some(runs)) => compare_control(&runs, robot),
         _ => return None,
     };
-    // Logarithmic panels share their axis, so that heights can be compared.
+    // Logarithmic panels share their axis, so that a reader can compare heights.
     let logarithmic = |p: &&Panel| p.log;
     let low = panels.iter().filter(logarithmic).filter_map(Panel::decades).fold(f64::INFINITY, |a, r| a.min(r.0));
     let high = panels.iter().filter(logarithmic).filter_map(Panel::decades).fold(0.0, |a, r| f64::max(a, r.1));
@@ -47,7 +47,7 @@ fn control_runs<'m>(members: &[(&'m Experiment, &'m Record)]) -> Option<Vec<Memb
     members.iter().map(run).collect()
 }
 
-/// The length of the errors of those rows that are linear, or angular.
+/// The norm of the errors of the linear rows, or of the angular rows.
 fn tip_error(record: &Record, angular: bool) -> Points {
     let rows = error_rows(record).filter(|row| row.is_angular() == angular);
     let columns: Vec<Points> = rows.map(|row| record.series(Quantity::TaskError(row))).collect();
@@ -78,7 +78,7 @@ fn compare_clik(members: &[Member<'_, ClikRun>], robot: &Robot) -> (Vec<Panel>, 
         }
         panels.push(panel);
     }
-    // The joint that tells them apart most.
+    // The joint with the largest spread of final positions.
     let spread = |joint: &usize| {
         let position = Quantity::Joint(JointQuantity::Position, *joint);
         let ends = members.iter().filter_map(|(_, _, record)| record.values(position).last().copied());

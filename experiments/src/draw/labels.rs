@@ -1,7 +1,7 @@
-//! Texts beside points, where they hide least of curves, points and one another.
+//! Labels near points, placed to hide as little as possible of curves, points and each other.
 //!
-//! Each text in turn takes the best of a few places about its point: the one whose box holds the least length of curves, no other point,
-//! and no text that stands already.
+//! Each label in turn takes the best of a few places around its point. The best box covers the least length of curves, no other point,
+//! and no earlier label.
 
 use super::svg::Anchor;
 
@@ -46,10 +46,10 @@ impl Rectangle {
     }
 }
 
-/// Where a text stands: the point of its anchor, on its baseline.
+/// Place of a label: the point of its anchor, on its baseline.
 pub(super) type Place = ((f64, f64), Anchor);
 
-/// The places of texts beside these points; `texts` are their widths, `curves` what they should not hide, `area` where they stand.
+/// The places of labels near these points; `texts` are their widths, `curves` the lines to keep visible, `area` their bounds.
 pub(super) fn place(
     points: &[(f64, f64)],
     widths: &[f64],
@@ -69,7 +69,7 @@ pub(super) fn place(
             let dots = points.iter().enumerate().filter(|(k, dot)| *k != i && rectangle.holds(**dot)).count() as f64;
             hidden + 100.0 * (over + dots) + if rectangle.lies_in(&area) { 0.0 } else { 1000.0 }
         };
-        // Of places that hide as much, the first.
+        // Of equally good places, the first.
         let best =
             candidates(*point, size).map(|place| (cost(&place), place)).into_iter().reduce(|a, b| if b.0 < a.0 { b } else { a });
         let (at, anchor) = best.map_or((*point, Anchor::Start), |(_, place)| place);
@@ -88,7 +88,7 @@ fn rectangle((x, y): (f64, f64), anchor: Anchor, width: f64, size: f64) -> Recta
     Rectangle { left: left - 1.5, top: y - 0.8 * size - 1.5, right: left + width + 1.5, bottom: y + 0.25 * size + 1.5 }
 }
 
-/// Places about a point, the nicest first.
+/// Places around a point, in order of preference.
 fn candidates((x, y): (f64, f64), size: f64) -> [Place; 12] {
     use Anchor::{End, Middle, Start};
     let down = 0.8 * size;
@@ -115,7 +115,7 @@ mod tests {
 
     const AREA: (f64, f64, f64, f64) = (0.0, 0.0, 200.0, 200.0);
 
-    /// The place of one text beside (100, 100).
+    /// The place of a single label near (100, 100).
     fn beside(curves: &[Vec<(f64, f64)>], others: &[(f64, f64)]) -> Place {
         let points: Vec<(f64, f64)> = [&[(100.0, 100.0)], others].concat();
         place(&points, &vec![20.0; points.len()], 10.0, curves, AREA)[0]
@@ -125,10 +125,10 @@ mod tests {
     fn a_text_keeps_off_curves_points_and_edges() {
         let ((x, y), anchor) = beside(&[], &[]);
         assert!(x > 100.0 && y < 100.0 && anchor == Anchor::Start, "to the right and above where nothing is in the way");
-        // Up to the right from the point.
+        // The curve goes up and to the right.
         let ((x, _), anchor) = beside(&[vec![(100.0, 100.0), (150.0, 60.0)]], &[]);
         assert!(x < 100.0 && anchor == Anchor::End);
-        // Along both sides above, and another point below on the right.
+        // A curve above on both sides, and another point below on the right.
         let curves = [vec![(50.0, 90.0), (150.0, 90.0)]];
         let ((x, y), _) = beside(&curves, &[(115.0, 110.0)]);
         assert!(x < 100.0 && y > 100.0);

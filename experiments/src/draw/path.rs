@@ -1,4 +1,4 @@
-//! The path in the plane of the sheet: as planned, and as the tip traced it; its height over time; its profiles.
+//! The path in the plane of the sheet, planned and traced by the tip; its height over time; its profiles.
 
 use std::time::Duration;
 
@@ -6,21 +6,21 @@ use super::plot::{figure, style, Panel, Series, WIDE};
 use super::svg::Stroke;
 use crate::model::{Motion, Quantity, Record};
 
-/// The points where a condition holds, cut (by a NaN) where it does not.
+/// The points with true condition; NaN marks the cuts elsewhere.
 fn where_cut(points: &[(f64, f64)], z: &[f64], shown: impl Fn(f64) -> bool) -> Vec<(f64, f64)> {
     points.iter().zip(z).map(|(p, z)| if shown(*z) { *p } else { (f64::NAN, f64::NAN) }).collect()
 }
 
-/// Period at which a plan is drawn.
+/// Sampling period for drawing a plan.
 const STEP: Duration = Duration::from_millis(2);
 
-/// The plan alone, or the plan, all of it, under what the tip `traced`.
+/// The plan alone, or the whole plan below the curve that the tip `traced`.
 pub(super) fn plan(title: &str, motion: &Motion, record: &Record, traced: Option<&str>) -> String {
     let end = motion.trajectory.duration();
     let steps = (0..end.as_nanos().div_ceil(STEP.as_nanos()) as u32).map(|k| STEP * k).chain([end]);
     let (planned, planned_z): (Vec<(f64, f64)>, Vec<f64>) =
         steps.map(|t| motion.trajectory.sample(t).pose.position).map(|p| ((p.x, p.y), p.z)).unzip();
-    // Over time the plan goes as far as the record does.
+    // Over time, the plan ends where the record ends.
     let time = record.values(Quantity::Time);
     let along: Vec<f64> = time.iter().map(|t| motion.trajectory.sample(Duration::from_secs_f64(*t)).pose.position.z).collect();
     let top = motion.sheet.map_or(f64::INFINITY, |sheet| sheet.top);
@@ -83,7 +83,7 @@ pub(super) fn plan(title: &str, motion: &Motion, record: &Record, traced: Option
     figure(title, &[plane, height, depth][..panels], panels, (if panels == 2 { 450.0 } else { 390.0 }, 340.0))
 }
 
-/// The ends of the segments, numbered; points at one place share their numbers.
+/// The numbered ends of the segments; coincident points share a label.
 fn mark_points(motion: &Motion, plane: &mut Panel) {
     let mut marks: Vec<(f64, f64, Vec<usize>)> = Vec::new();
     let segments = motion.trajectory.path.segments();

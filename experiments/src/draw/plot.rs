@@ -3,7 +3,7 @@
 use super::labels;
 use super::svg::{Anchor, Stroke, Svg, INK, PALE};
 
-/// Colours that differ for colour-blind eyes and in grey (Okabe, Ito), each with its dashes for print.
+/// Colours that differ in colour-blind vision and in grey (Okabe, Ito), each with a dash pattern for print.
 const STYLES: [(&str, &str); 8] = [
     ("#0072b2", ""),
     ("#d55e00", "7 3"),
@@ -21,13 +21,13 @@ pub(super) fn style(i: usize) -> Stroke {
     Stroke { colour, width: 1.4, dash }
 }
 
-/// What is desired, under what was reached.
+/// The desired curve, drawn below the actual curve.
 pub(super) const WIDE: Stroke = Stroke { colour: "#f0b070", width: 4.0, dash: "" };
 
 /// A curve.
 #[derive(Clone, Debug)]
 pub(super) struct Series {
-    /// In the legend; empty for none.
+    /// Name in the legend; empty to omit the curve there.
     pub(super) name: String,
     pub(super) points: Vec<(f64, f64)>,
     pub(super) stroke: Stroke,
@@ -40,14 +40,14 @@ pub(super) struct Panel {
     /// Quantity and unit.
     pub(super) x: (String, String),
     pub(super) y: (String, String),
-    /// Logarithmic in y; zero lies below everything.
+    /// Logarithmic y axis; zero lies below the panel.
     pub(super) log: bool,
     /// The same scale along both axes.
     pub(super) equal: bool,
-    /// A range of y that is wanted; from the series otherwise.
+    /// Fixed range of y; by default the range of the series.
     pub(super) range: Option<(f64, f64)>,
     pub(super) series: Vec<Series>,
-    /// Points with a text beside them.
+    /// Points with labels.
     pub(super) marks: Vec<(f64, f64, String)>,
 }
 
@@ -63,7 +63,7 @@ impl Panel {
         self.series.push(Series { name: name.into(), points, stroke });
     }
 
-    /// The name of a curve in the legend; of one that a logarithmic axis cannot show, with the reason.
+    /// The name of a curve in the legend; with a reason if the logarithmic axis cannot show the curve.
     fn legend_name(&self, series: &Series) -> String {
         let low = self.range.or_else(|| self.decades()).map_or(0.0, |(low, _)| low);
         let largest = series.points.iter().map(|p| p.1).filter(|y| y.is_finite()).reduce(f64::max);
@@ -74,7 +74,7 @@ impl Panel {
         }
     }
 
-    /// Largest and smallest value that a logarithmic axis shows: whole decades, at most seven.
+    /// Range of a logarithmic axis: whole decades, at most seven.
     pub(super) fn decades(&self) -> Option<(f64, f64)> {
         let values = || self.series.iter().flat_map(|s| &s.points).map(|p| p.1).filter(|y| *y > 0.0 && y.is_finite());
         let top = values().fold(0.0, f64::max);
@@ -92,7 +92,7 @@ const RIGHT: f64 = 14.0;
 const LINE: f64 = 16.0;
 const BELOW: f64 = 40.0;
 
-/// Panels in so many columns under a title.
+/// A figure with a title and its panels in this number of columns.
 pub(super) fn figure(title: &str, panels: &[Panel], columns: usize, panel: (f64, f64)) -> String {
     let columns = columns.clamp(1, panels.len().max(1));
     let head = 34.0;
@@ -112,7 +112,7 @@ pub(super) fn figure(title: &str, panels: &[Panel], columns: usize, panel: (f64,
     svg.text_of()
 }
 
-/// Estimated width of a text: no font is measured, so a little more than most need.
+/// Estimated width of a text: slightly more than most fonts need, because no font is measured.
 fn width_of(text: &str, size: f64) -> f64 {
     text.chars().count() as f64 * size * 0.56
 }
@@ -140,7 +140,7 @@ fn above(panel: &Panel, width: f64) -> f64 {
     title + legend(panel, width - LEFT - RIGHT).len() as f64 * LINE + 6.0
 }
 
-/// One axis: from value to place.
+/// An axis: maps values to pixels.
 #[derive(Clone, Copy)]
 struct Axis {
     from: f64,
@@ -158,14 +158,14 @@ impl Axis {
         self.start + part * (self.end - self.start)
     }
 
-    /// Values with a tick, and the power of ten taken out of their labels.
+    /// Values with a tick, and the common power of ten of their labels.
     fn ticks(&self) -> (Vec<f64>, i32) {
         if self.log {
             let (low, high) = (self.from.log10().round() as i32, self.to.log10().round() as i32);
             let stride = (f64::from(high - low) / 8.0).ceil().max(1.0) as i32;
             return ((low..=high).filter(|k| (high - k) % stride == 0).map(|k| 10f64.powi(k)).collect(), 0);
         }
-        // Labels side by side need more room than labels above one another.
+        // Labels along a horizontal axis need more space than labels along a vertical axis.
         let room = if self.end < self.start { 30.0 } else { 55.0 };
         let wanted = ((self.end - self.start).abs() / room).clamp(3.0, 10.0);
         let rough = (self.to - self.from) / wanted;
@@ -174,7 +174,7 @@ impl Axis {
         let (first, last) = ((self.from / step - 1e-9).ceil() as i64, (self.to / step + 1e-9).floor() as i64);
         let largest = self.from.abs().max(self.to.abs());
         let exponent = if largest > 0.0 { largest.log10().floor() as i32 } else { 0 };
-        // A power is taken out of labels that would be too wide: large numbers, and small ones with three decimals.
+        // A common power avoids labels that are too wide: large numbers, and small numbers with three decimals.
         let plain = (0..4).contains(&exponent) || ((-2..0).contains(&exponent) && step > 0.0099);
         let out = if plain { 0 } else { exponent.div_euclid(3) * 3 };
         ((first..=last).map(|k| k as f64 * step).collect(), out)
@@ -226,7 +226,7 @@ fn axes(panel: &Panel, (x, y, w, h): (f64, f64, f64, f64)) -> (Axis, Axis) {
     let over_time = panel.x.1 == "s";
     let (mut x0, mut x1) = range(points().map(|p| p.0).chain(marks().map(|m| m.0)));
     if over_time {
-        // Time begins and ends at the edges.
+        // The time axis has no margin.
         let inner = (x1 - x0) / 1.08 * 0.04;
         (x0, x1) = (x0 + inner, x1 - inner);
     }
@@ -305,17 +305,17 @@ fn draw(svg: &mut Svg, panel: &Panel, (left, top): (f64, f64), above: f64, area:
     svg.text((left + 14.0, y + h / 2.0), 11.5, Anchor::Middle, true, &axis_label(&panel.y, y_out));
 }
 
-/// How far beyond its panel a curve is drawn (and clipped), px.
+/// Distance beyond its panel up to which a curve is drawn (and clipped), px.
 const OUTSIDE: f64 = 40.0;
 
-/// The places of the points, cut where there is none to show; on a logarithmic axis zero lies below the panel.
+/// The pixels of the points, cut where a value is not finite; on a logarithmic axis zero lies below the panel.
 fn pieces(points: &[(f64, f64)], across: &Axis, up: &Axis) -> Vec<Vec<(f64, f64)>> {
     let mut pieces = vec![Vec::new()];
     for (x, y) in points {
         let shown = x.is_finite() && y.is_finite();
         let place = if up.log && *y <= 0.0 { f64::INFINITY } else { up.at(*y) };
         match (shown, pieces.last_mut()) {
-            // Outside the panel a coordinate says nothing but its side.
+            // Outside the panel only the side of a coordinate matters.
             (true, Some(piece)) => piece.push((across.at(*x), place.clamp(up.end - OUTSIDE, up.start + OUTSIDE))),
             (false, Some(piece)) if !piece.is_empty() => pieces.push(Vec::new()),
             _ => {}
@@ -324,7 +324,7 @@ fn pieces(points: &[(f64, f64)], across: &Axis, up: &Axis) -> Vec<Vec<(f64, f64)
     pieces
 }
 
-/// Fewer points that look the same: per step of x the first, lowest, highest and last, then those that a straight line cannot replace.
+/// Fewer points with the same look: per step of x the first, lowest, highest and last, minus those that a straight line replaces.
 fn thin(points: &[(f64, f64)]) -> Vec<(f64, f64)> {
     let monotonic = points.windows(2).all(|p| p[1].0 >= p[0].0);
     let mut kept: Vec<(f64, f64)> = Vec::new();
@@ -349,7 +349,7 @@ fn thin(points: &[(f64, f64)]) -> Vec<(f64, f64)> {
     simplify(&kept, 0.2)
 }
 
-/// Ramer, Douglas and Peucker: points farther than `tolerance` from the line that would replace them stay.
+/// Ramer, Douglas and Peucker: keeps points farther than `tolerance` from the line that would replace them.
 fn simplify(points: &[(f64, f64)], tolerance: f64) -> Vec<(f64, f64)> {
     if points.len() < 3 {
         return points.to_vec();

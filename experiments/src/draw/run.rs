@@ -13,7 +13,7 @@ pub(super) fn absolute(points: Points) -> Points {
     points.into_iter().map(|(t, x)| (t, x.abs())).collect()
 }
 
-/// The rows of which the record holds the errors.
+/// The rows whose errors the record contains.
 pub(super) fn error_rows(record: &Record) -> impl Iterator<Item = Row> + '_ {
     record.channels().iter().filter_map(|channel| match channel.quantity {
         Quantity::TaskError(row) => Some(row),
@@ -36,12 +36,12 @@ pub(super) fn unit_of_w(rows: &[Row], robot: &Robot) -> String {
     }
 }
 
-/// The parameters that the load changes.
+/// The parameters that differ in the plant because of the load.
 pub(super) fn loaded(run: &ControlRun, robot: &Robot) -> Vec<usize> {
     (0..robot.parameters.len()).filter(|i| run.plant[*i] != robot.parameters[*i].nominal).collect()
 }
 
-/// A panel of one quantity of all joints of one kind: those that turn, or those that slide.
+/// A panel with a quantity of all revolute joints, or of all prismatic joints.
 fn of_joints(
     title: [&str; 2],
     symbol: &str,
@@ -63,7 +63,7 @@ fn of_joints(
     panel
 }
 
-/// Those panels that show something.
+/// The panels with content.
 fn shown(panels: impl IntoIterator<Item = Panel>) -> Vec<Panel> {
     panels.into_iter().filter(|panel| !panel.series.is_empty()).collect()
 }
@@ -107,7 +107,7 @@ pub(super) fn clik(title: &str, run: &ClikRun, record: &Record, robot: &Robot) -
     figure(title, &panels, 2, SIZE)
 }
 
-/// Estimates of the parameters that the load changes, beside their true values.
+/// Estimates of the parameters that the load changes, with their true values.
 fn estimates(run: &ControlRun, record: &Record, robot: &Robot) -> Panel {
     let mut panel = Panel::over_time("estimate of the load's parameter (SI)", "estimate", "");
     for i in loaded(run, robot) {
@@ -120,9 +120,9 @@ fn estimates(run: &ControlRun, record: &Record, robot: &Robot) -> Panel {
     panel
 }
 
-/// Errors of joints and tip, torques, estimates; what turns on the left, what slides on the right.
+/// Errors of joints and tip, torques, estimates: revolute joints on the left, prismatic joints on the right.
 pub(super) fn control(title: &str, run: &ControlRun, record: &Record, robot: &Robot) -> String {
-    // A run that ended early shows how fast it was lost: over decades.
+    // A run that ended early shows its growth over decades.
     let lost = record.ended.is_some();
     let joints = |title: [&str; 2], symbol: &str, of: JointQuantity, log: bool| {
         [true, false].map(|revolute| of_joints(title, symbol, of, revolute, record, robot, log))
@@ -145,7 +145,7 @@ pub(super) fn control(title: &str, run: &ControlRun, record: &Record, robot: &Ro
     figure(title, &shown(panels), 2, SIZE)
 }
 
-/// The path of the tip in the plane in which it goes farthest, as desired and as it was.
+/// The path of the tip, desired and actual, in the coordinate plane of its largest extent.
 fn tip(record: &Record) -> Panel {
     let span = |axis: usize| {
         let values = record.values(Quantity::DesiredTip(axis));

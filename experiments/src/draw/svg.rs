@@ -1,6 +1,6 @@
-//! A figure as SVG text: a white page, dark ink, so that it reads in print and on a dark page alike.
+//! A figure as SVG text. A white page with dark ink is readable in print and on a dark page.
 //!
-//! Coordinates are pixels, y downwards, kept to a tenth.
+//! Coordinates are pixels, y downwards, rounded to a tenth.
 
 use std::fmt::Write;
 
@@ -17,7 +17,7 @@ pub(super) struct Svg {
     clips: usize,
 }
 
-/// How a line looks.
+/// The style of a line.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Stroke {
     pub(super) colour: &'static str,
@@ -26,7 +26,7 @@ pub(super) struct Stroke {
     pub(super) dash: &'static str,
 }
 
-/// Where a text stands about its point.
+/// The position of a text relative to its point.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Anchor {
     Start,
@@ -51,12 +51,12 @@ impl Svg {
     }
 
     fn push(&mut self, text: std::fmt::Arguments<'_>) {
-        // A text takes everything.
+        // A `String` accepts all text.
         let _ = self.body.write_fmt(text);
         self.body.push('\n');
     }
 
-    /// A line through points; nothing for fewer than two.
+    /// A line through points; draws nothing for fewer than two.
     pub(super) fn line(&mut self, points: &[(f64, f64)], stroke: Stroke) {
         if points.len() < 2 {
             return;
@@ -88,7 +88,7 @@ impl Svg {
         ));
     }
 
-    /// A text of this size; `upwards` turns it by a quarter to the left.
+    /// A text of this size; `upwards` rotates it by 90° counterclockwise.
     pub(super) fn text(&mut self, (x, y): (f64, f64), size: f64, anchor: Anchor, upwards: bool, text: &str) {
         let anchor = match anchor {
             Anchor::Start => "",
@@ -105,7 +105,7 @@ impl Svg {
         ));
     }
 
-    /// What is drawn by `draw` shows only within a rectangle.
+    /// Clips the output of `draw` to a rectangle.
     pub(super) fn clipped(&mut self, (x, y, w, h): (f64, f64, f64, f64), draw: impl FnOnce(&mut Svg)) {
         self.clips += 1;
         let id = self.clips;

@@ -1,26 +1,26 @@
-//! Channels: what a run records, each with its quantity, its name in files and tables, and its unit.
+//! Channels: the recorded quantities of a run, with their names in files and tables, and their units.
 //!
-//! Runs write, figures and expectations look up by [`Quantity`]; the name is for people and for the headers of logs.
+//! Runs, figures and expectations identify a channel by its [`Quantity`]; the name serves readers and the headers of logs.
 
 use armgen_runtime::task::Row;
 
 use super::{Robot, Unit};
 
-/// What a channel holds.
+/// The quantity in a channel.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Quantity {
     // Over time.
     /// t.
     Time,
-    /// Of the joint of this index.
+    /// A quantity of the joint with this index.
     Joint(JointQuantity, usize),
-    /// Position of the tip along the axis of this index.
+    /// Position of the tip along the axis with this index, m.
     Tip(usize),
-    /// Its desired position.
+    /// Desired position of the tip along the axis with this index, m.
     DesiredTip(usize),
     /// Error of a row of the task, desired minus actual.
     TaskError(Row),
-    /// Turn about z0 from the frame of the path, without jumps.
+    /// Rotation about z0 from the frame of the path, unwrapped.
     Angle,
     /// |v| of the tip.
     Speed,
@@ -32,56 +32,56 @@ pub enum Quantity {
     TurnAcceleration,
     /// Distance of the tip from the z0 axis.
     Distance,
-    /// Change of the velocity of the tip in one sample, along the axis where it is largest.
+    /// Largest change of a velocity component of the tip within a sample.
     VelocityStep,
-    /// w of the task of the robot.
+    /// w = √det(J Jᵀ) of the robot's task.
     Manipulability,
-    /// w of the rows that are followed.
+    /// w of the followed rows.
     FollowedManipulability,
     /// T_s lambda_max(J' K J) of the Jacobian transpose.
     LoopGain,
-    /// |z| of robust control.
+    /// |z| of robust control, z = DᵀQξ.
     ZNorm,
-    /// Estimate of the parameter of this index.
+    /// Estimate of the parameter with this index.
     Estimate(usize),
 
     // Of the whole run.
-    /// The largest spectral radius of the sampled loop along the path, about the estimate from which it begins.
+    /// The largest spectral radius of the sampled loop along the path, linearised about the initial estimate.
     SpectralRadius,
     /// The same with one sample of delay.
     DelayedSpectralRadius,
-    /// The sampling period up to which the loop is stable, about the estimate from which it begins.
+    /// The largest stable sampling period, linearised about the initial estimate.
     StablePeriod,
-    /// The largest spectral radius about rest, where the arm can rest.
+    /// The largest spectral radius at rest, where the arm can rest.
     RestRadius,
-    /// The sampling period up to which the loop is stable at rest.
+    /// The largest sampling period with stability at rest.
     RestPeriod,
-    /// The largest growth of a small deviation in motion.
+    /// The largest growth factor of a small deviation in motion.
     MotionGrowth,
-    /// The rate at which it goes on growing.
+    /// The final growth rate of that deviation.
     MotionRate,
-    /// When the simulated motion leaves its reference.
+    /// Time at which the simulated motion without noise leaves its reference.
     MotionLostAt,
-    /// When a joint was first off by more than a tenth.
+    /// Time of the first joint error above 0.1 rad or m.
     LostAt,
-    /// When a rate was first cut.
+    /// Time of the first limited rate.
     RateLimitedAt,
     /// The end of the path.
     EndsAt,
-    /// How many postures reach the first pose of the path.
+    /// The number of postures for the first pose of the path.
     PosturesAtStart,
-    /// When the branch ends that is followed; the end of the path if it does not.
+    /// The end of the followed branch, or of the path if the branch continues to it.
     BranchEndsAt,
-    /// The largest miss of a stop.
+    /// The largest distance from a stop.
     Stops,
-    /// The least distance to the end of the segment of this index, a via point.
+    /// The least distance to a via point: the end of the segment with this index.
     Via(usize),
-    /// Of the posture of this index.
+    /// A quantity of the posture with this index.
     Posture(PostureQuantity, usize),
 }
 
 impl Quantity {
-    /// What it is, for whom its name does not say it.
+    /// An explanation in words, for readers to whom the name is unclear.
     pub fn meaning(self) -> &'static str {
         use JointQuantity as J;
         match self {
@@ -145,26 +145,26 @@ pub enum JointQuantity {
 /// Quantities of a posture.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum PostureQuantity {
-    /// Position of the tip along the axis of this index.
+    /// Position of the tip along the axis with this index.
     Tip(usize),
-    /// Manipulability w of the task of the robot.
+    /// Manipulability w of the robot's task.
     Manipulability,
     /// Angle of the end effector's y axis in the plane.
     Heading,
-    /// Semi-axis of the velocity ellipsoid of this index.
+    /// Semi-axis of the velocity ellipsoid with this index.
     Velocity(usize),
     /// Direction of that axis.
     Direction(usize),
-    /// Semi-axis of the force ellipsoid of this index.
+    /// Semi-axis of the force ellipsoid with this index.
     Force(usize),
     /// Condition number of the Jacobian in the plane.
     Condition,
-    /// Its distance to a singular one.
+    /// Distance of the Jacobian in the plane to a singular matrix.
     Distance,
 }
 
 impl PostureQuantity {
-    /// All of them, as they stand in files.
+    /// All posture quantities, in the order of files.
     pub const ALL: [PostureQuantity; 13] = [
         PostureQuantity::Tip(0),
         PostureQuantity::Tip(1),
@@ -222,7 +222,7 @@ const AXES: [&str; 3] = ["x", "y", "z"];
 /// A quantity with its name and its unit.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Channel {
-    /// What it holds.
+    /// The quantity.
     pub quantity: Quantity,
     /// Its name in files, tables and the headers of logs.
     pub name: String,
@@ -231,7 +231,7 @@ pub struct Channel {
 }
 
 impl Channel {
-    /// The channel of a quantity of a run on this robot.
+    /// The channel of a quantity for a run on this robot.
     pub fn new(quantity: Quantity, robot: &Robot) -> Channel {
         use JointQuantity as J;
         let joint = |i: usize| &robot.joints[i];
@@ -276,7 +276,7 @@ impl Channel {
         Channel { quantity, name, unit }
     }
 
-    /// The channel of a quantity of the `index`-th posture, which is called `posture`.
+    /// The channel of a quantity of the posture with this index and name.
     pub fn of_posture(quantity: PostureQuantity, index: usize, posture: &str) -> Channel {
         let name = format!("{posture}.{}", quantity.name());
         Channel { quantity: Quantity::Posture(quantity, index), name, unit: quantity.unit() }

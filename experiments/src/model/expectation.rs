@@ -1,22 +1,22 @@
-//! What is expected of a run: a channel, how one number is taken of it, and what that number should be.
+//! Expectations about a run: a channel, an evaluation that gives a number, and the expected value of that number.
 
 use super::Channel;
 
-/// One line of the table.
+/// A row of the table.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Expectation {
-    /// Of a log, or of the numbers of the whole run.
+    /// A channel over time, or a number of the whole run.
     pub channel: Channel,
-    /// How the number is taken.
+    /// The evaluation.
     pub take: Take,
-    /// What it should be.
+    /// The expected value.
     pub target: Target,
 }
 
-/// How one number is taken of a channel; times in s.
+/// The evaluation of a channel to a number; times in s.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Take {
-    /// It is a number of the whole run.
+    /// The number of the whole run.
     Number,
     /// The value at a time.
     At(f64),
@@ -26,12 +26,12 @@ pub enum Take {
     Highest(f64, f64),
     /// The smallest value in an interval.
     Lowest(f64, f64),
-    /// The rate at which it decays from the beginning to the end of an interval, 1/s.
+    /// Exponential decay rate between the two ends of an interval, 1/s.
     Decay(f64, f64),
 }
 
 impl Take {
-    /// The last time that is looked at, s; `None` for a number of the whole run.
+    /// The last time that the evaluation needs, s; `None` for a number of the whole run.
     pub fn end(self) -> Option<f64> {
         match self {
             Take::Number => None,
@@ -40,16 +40,16 @@ impl Take {
     }
 }
 
-/// What a number should be.
+/// The expected value of a number.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Target {
-    /// This value, within a tolerance, which may have been given in percent of it.
+    /// This value within a tolerance, which may come from a percentage.
     Near {
         /// The value.
         value: f64,
         /// The tolerance.
         tolerance: f64,
-        /// The tolerance in percent, if it was given so.
+        /// The tolerance in percent, if given so.
         percent: Option<f64>,
     },
     /// This or less.

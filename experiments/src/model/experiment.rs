@@ -1,4 +1,4 @@
-//! Experiments: what is done, with which channels.
+//! Experiments: their kinds, settings and channels.
 
 use std::time::Duration;
 
@@ -10,28 +10,28 @@ use super::{Channel, ControlLaw, Expectation, JointQuantity, Motion, PostureQuan
 /// A valid experiment.
 #[derive(Clone, Debug)]
 pub struct Experiment {
-    /// Name of its file, without the ending.
+    /// Name of its file, without the extension.
     pub name: String,
-    /// One line that says what it shows.
+    /// A title of one line.
     pub title: String,
-    /// Experiments of one group are drawn into one figure, too; several groups are separated by blanks.
+    /// Experiments of a group also share a figure; blanks separate several groups.
     pub group: Option<String>,
-    /// What is done.
+    /// The kind of experiment with its settings.
     pub body: Body,
-    /// What should come out.
+    /// The expected results.
     pub expect: Vec<Expectation>,
 }
 
-/// What an experiment does.
+/// The kinds of experiments.
 #[derive(Clone, Debug)]
 pub enum Body {
-    /// Manipulability at postures.
+    /// Manipulability in several postures.
     Postures(Postures),
-    /// A path as planned.
+    /// A planned path alone.
     Path(Sampling),
     /// Closed-loop inverse kinematics along a path.
     Clik(ClikRun),
-    /// One posture of all that inverse kinematics finds, along a path.
+    /// A branch of the inverse kinematics, followed along a path.
     Branch(BranchRun),
     /// A controller along a path.
     Control(ControlRun),
@@ -46,18 +46,18 @@ pub struct Posture {
     pub q: Vec<f64>,
 }
 
-/// Postures to be judged.
+/// Postures to evaluate.
 #[derive(Clone, Debug)]
 pub struct Postures {
-    /// They, in their order.
+    /// The postures, in order.
     pub list: Vec<Posture>,
-    /// The two linear rows in which ellipsoids are drawn and measured.
+    /// The two linear rows that span the plane of the ellipsoids.
     pub plane: [Row; 2],
-    /// Further postures for a figure only: all combinations of values of the first two joints.
+    /// Additional postures for a figure: all combinations of values of the first two joints.
     pub grid: Option<[Vec<f64>; 2]>,
 }
 
-/// A path and when to look at it.
+/// A path with its sampling.
 #[derive(Clone, Debug)]
 pub struct Sampling {
     /// The path.
@@ -68,12 +68,12 @@ pub struct Sampling {
     pub duration: Duration,
 }
 
-/// Where a run begins.
+/// The start of a run.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Start {
-    /// At these joint variables.
+    /// These joint variables.
     Joints(Vec<f64>),
-    /// Where the path begins, at a posture that inverse kinematics finds, from these joint variables if they are given.
+    /// A posture at the beginning of the path, by inverse kinematics; the search starts at these joint variables if given.
     Path(Option<Vec<f64>>),
 }
 
@@ -82,22 +82,22 @@ pub enum Start {
 pub struct ClikRun {
     /// The path.
     pub sampling: Sampling,
-    /// Where it begins.
+    /// The start.
     pub start: Start,
-    /// The rows that are followed.
+    /// The followed rows.
     pub rows: Vec<Row>,
     /// The algorithm.
     pub algorithm: Algorithm,
-    /// One per row.
+    /// A gain per row.
     pub gains: Vec<f64>,
 }
 
-/// A branch of inverse kinematics that is followed along a path.
+/// A branch of inverse kinematics along a path.
 #[derive(Clone, Debug)]
 pub struct BranchRun {
     /// The path.
     pub sampling: Sampling,
-    /// The posture that is followed.
+    /// The posture at the start of the branch.
     pub start: Start,
 }
 
@@ -126,7 +126,7 @@ impl AlgorithmKind {
         AlgorithmKind::SecondOrder,
     ];
 
-    /// Its name in the file.
+    /// Its name in files.
     pub const fn name(self) -> &'static str {
         match self {
             AlgorithmKind::Inverse => "inverse",
@@ -137,7 +137,7 @@ impl AlgorithmKind {
         }
     }
 
-    /// The keys that it has beside its gains.
+    /// Its keys besides the gains.
     pub const fn keys(self) -> &'static [&'static str] {
         match self {
             AlgorithmKind::Inverse | AlgorithmKind::Transpose => &[],
@@ -157,28 +157,28 @@ pub enum Algorithm {
     Transpose,
     /// The pseudo-inverse.
     PseudoInverse {
-        /// Gain of the free motion.
+        /// Gain k_0 of the null-space motion dq_0.
         k_0: f64,
-        /// The rows whose manipulability it climbs.
+        /// The rows whose manipulability the null-space motion maximises.
         objective: Option<Vec<Row>>,
     },
     /// Damped least squares.
     DampedLeastSquares {
-        /// lambda_0, the greatest damping.
+        /// lambda_0, the maximum damping.
         damping: f64,
-        /// w_0, the manipulability below which it begins.
+        /// w_0, the manipulability below which damping begins.
         threshold: f64,
     },
     /// Second order; the gains are K_P.
     SecondOrder {
-        /// K_D, one per row.
+        /// K_D, a gain per row.
         k_d: Vec<f64>,
-        /// How rates and positions are stepped.
+        /// The integration of rates and positions.
         integration: Integration,
     },
 }
 
-/// Gains of second-order inverse kinematics, one per row of the task.
+/// Gains of second-order inverse kinematics, a gain per row of the task.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ReferenceGains {
     /// K_P, 1/s².
@@ -192,37 +192,37 @@ pub struct ReferenceGains {
 pub struct ControlRun {
     /// The path.
     pub sampling: Sampling,
-    /// Where it begins.
+    /// The start.
     pub start: Start,
     /// Parameters of the plant.
     pub plant: Vec<f64>,
-    /// Of the second-order inverse kinematics that makes the joint reference.
+    /// Gains of the second-order inverse kinematics that computes the joint reference.
     pub reference: ReferenceGains,
     /// The controller.
     pub law: ControlLaw,
     /// Samples between measurement and torque.
     pub delay: usize,
-    /// Of the measurement.
+    /// Noise of the measurement.
     pub noise: Noise,
-    /// Runge-Kutta steps a sample.
+    /// Runge-Kutta steps per sample.
     pub substeps: u32,
-    /// Whether arm and law run in continuous time.
+    /// Whether arm and controller run in continuous time.
     pub continuous: bool,
 }
 
 /// Noise of a measurement.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Noise {
-    /// Deviation of joint variables.
+    /// Standard deviation of joint variables, rad or m.
     pub position: f64,
-    /// Deviation of rates.
+    /// Standard deviation of rates, rad/s or m/s.
     pub rate: f64,
-    /// Where the random numbers begin.
+    /// Seed of the random numbers.
     pub seed: u32,
 }
 
 impl Body {
-    /// What it records over time.
+    /// The recorded channels over time.
     pub fn channels(&self, robot: &Robot) -> Vec<Channel> {
         let mut quantities = vec![Quantity::Time];
         let joints = |of: JointQuantity| (0..robot.dof()).map(move |i| Quantity::Joint(of, i));
@@ -294,12 +294,12 @@ impl Body {
         quantities.into_iter().map(|quantity| Channel::new(quantity, robot)).collect()
     }
 
-    /// When the run ends, s.
+    /// The end of the run, s.
     pub fn end(&self) -> f64 {
         self.sampling().map_or(0.0, |sampling| sampling.duration.as_secs_f64())
     }
 
-    /// The path, where there is one.
+    /// The path, if any.
     pub fn sampling(&self) -> Option<&Sampling> {
         match self {
             Body::Postures(_) => None,

@@ -1,45 +1,45 @@
-//! The laws of control of an experiment: each with its name, its gains, and what else it may be given.
+//! The control laws of an experiment: names, gains, and optional settings.
 
 use std::collections::BTreeMap;
 
 use super::{Quantity, Robot};
 
-/// Which controller.
+/// The kinds of controllers.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ControlLawKind {
     /// u = g(q) + K_P e + K_D de.
     PdGravity,
     /// u = B (ddq_d + K_D de + K_P e) + n.
     InverseDynamics,
-    /// The same with a term that beats a bounded uncertainty.
+    /// Inverse dynamics with a robust term against a bounded uncertainty.
     Robust,
-    /// u = Y(q, dq, dq_r, ddq_r) pi^ + K_D sigma, pi^ adapted.
+    /// u = Y(q, dq, dq_r, ddq_r) pi^ + K_D sigma, with adaptation of pi^.
     Adaptive,
-    /// Inverse dynamics in the operational space, with integral.
+    /// Inverse dynamics in the operational space, with integral action.
     OperationalSpace,
 }
 
-/// What a gain has a number for.
+/// The dimension of a gain.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Per {
-    /// Each joint.
+    /// A number per joint.
     Joint,
-    /// Each row of the task.
+    /// A number per row of the task.
     Row,
-    /// Each parameter of the regressor.
+    /// A number per parameter of the regressor.
     Parameter,
-    /// The law as a whole.
+    /// A single number.
     Law,
 }
 
 /// A gain that a law needs.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Gain {
-    /// Its key in the file.
+    /// Its key in files.
     pub key: &'static str,
-    /// What it has numbers for.
+    /// Its dimension.
     pub per: Per,
-    /// Whether it may be zero; it is positive otherwise.
+    /// Whether zero is allowed; otherwise it must be positive.
     pub may_be_zero: bool,
 }
 
@@ -61,7 +61,7 @@ impl ControlLawKind {
         ControlLawKind::OperationalSpace,
     ];
 
-    /// Its name in the file.
+    /// Its name in files.
     pub const fn name(self) -> &'static str {
         match self {
             ControlLawKind::PdGravity => "pd_gravity",
@@ -72,7 +72,7 @@ impl ControlLawKind {
         }
     }
 
-    /// What it must be given.
+    /// The required gains.
     pub const fn gains(self) -> &'static [Gain] {
         const JOINT_SPACE: &[Gain] = &[gain("k_p", Per::Joint), gain("k_d", Per::Joint)];
         const ROBUST: &[Gain] = &[
@@ -93,7 +93,7 @@ impl ControlLawKind {
         }
     }
 
-    /// The keys that it may be given.
+    /// The optional keys.
     pub const fn optional(self) -> &'static [&'static str] {
         match self {
             ControlLawKind::Adaptive => &["torque_limits", "estimate", "lowest", "highest", "adaptation"],
@@ -106,7 +106,7 @@ impl ControlLawKind {
         matches!(self, ControlLawKind::Adaptive)
     }
 
-    /// The quantities that it logs at every sample, beside the torque.
+    /// The quantities that it logs at every sample besides the torque.
     pub fn watched(self, robot: &Robot) -> Vec<Quantity> {
         match self {
             ControlLawKind::Robust => vec![Quantity::ZNorm],
@@ -119,17 +119,17 @@ impl ControlLawKind {
 /// A controller with its gains.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ControlLaw {
-    /// Which controller.
+    /// The kind of controller.
     pub kind: ControlLawKind,
-    /// By the keys of [`ControlLawKind::gains`]; as many numbers as these say.
+    /// The gains by the keys of [`ControlLawKind::gains`], which also give the dimensions.
     pub gains: BTreeMap<&'static str, Vec<f64>>,
-    /// One per joint, N m or N.
+    /// A limit per joint, N m or N.
     pub torque_limits: Option<Vec<f64>>,
-    /// Of a law that adapts.
+    /// Settings of an adaptive law.
     pub adaptation: Adaptation,
 }
 
-/// The interval that an estimate is projected on.
+/// The interval onto which estimates are projected.
 #[derive(Clone, Debug, PartialEq)]
 pub struct EstimateBounds {
     /// The lowest estimates.
@@ -138,19 +138,19 @@ pub struct EstimateBounds {
     pub highest: Vec<f64>,
 }
 
-/// How a law adapts its estimate of the parameters.
+/// Settings for the adaptation of the parameter estimate.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Adaptation {
-    /// What it starts from.
+    /// The initial estimate.
     pub estimate: Vec<f64>,
-    /// What it is kept in, where there are bounds.
+    /// Bounds of the estimate, if any.
     pub bounds: Option<EstimateBounds>,
-    /// Whether it adapts at all.
+    /// Whether adaptation is active.
     pub is_on: bool,
 }
 
 impl ControlLaw {
-    /// The numbers of a gain; none for a key that the law does not have.
+    /// The numbers of a gain; empty for an unknown key.
     pub fn gain(&self, key: &str) -> &[f64] {
         self.gains.get(key).map_or(&[], Vec::as_slice)
     }

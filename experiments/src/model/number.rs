@@ -1,11 +1,11 @@
-//! Numbers for people.
+//! Numbers for display.
 
-/// A number with seven digits, as short as they allow.
+/// A number rounded to seven digits, without trailing zeros.
 pub fn number(x: f64) -> String {
     digits(x, 7)
 }
 
-/// A number with so many digits, as short as they allow.
+/// A number rounded to `count` digits, without trailing zeros.
 pub fn digits(x: f64, count: i32) -> String {
     if !x.is_finite() {
         return if x.is_nan() { "none".into() } else { x.to_string() };

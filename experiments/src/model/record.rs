@@ -1,4 +1,4 @@
-//! What a run leaves behind.
+//! The results of a run.
 
 use std::fmt::Write;
 
@@ -8,42 +8,42 @@ use armgen_runtime::simulation::Log;
 
 use super::{Channel, Quantity};
 
-/// Channels over time, numbers of the whole run, and what has to be said.
+/// Channels over time, numbers of the whole run, and further results.
 #[derive(Clone, Debug, Default)]
 pub struct Record {
-    /// The channels over time, in the order of the columns of the log; the first one is the time.
+    /// The channels over time, in the order of the log's columns; the first is the time.
     channels: Vec<Channel>,
-    /// A row a sample.
+    /// A row per sample.
     log: Log,
     /// The numbers of the whole run.
     pub numbers: Vec<(Channel, f64)>,
-    /// The arm at the postures of the experiment, for figures.
+    /// The arm in the postures of the experiment, for figures.
     pub shapes: Shapes,
-    /// How fast and how hard each joint worked, where a controller drove it.
+    /// Peak rate and effort per joint, if a controller drove the arm.
     pub peaks: Vec<Peak>,
-    /// How the run ended early, if it did.
+    /// The reason of an early end, if any.
     pub ended: Option<Ended>,
-    /// How fast it was simulated, where something was.
+    /// The speed of the simulation, if any.
     pub speed: Speed,
 }
 
-/// How a run ended early.
+/// An early end of a run.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Ended {
-    /// Why, in words.
+    /// The reason, in words.
     pub why: String,
-    /// The number of the run that tells when what ended it came about, where one does: who expects something of it expects the end.
+    /// The quantity that reports the time of this end, if any: an expectation about it expects the end.
     pub told_by: Option<Quantity>,
 }
 
 impl Ended {
-    /// An end of which no number of the run tells.
+    /// An end that no quantity reports.
     pub fn untold(why: String) -> Ended {
         Ended { why, told_by: None }
     }
 }
 
-/// The largest sizes of a joint's rate and of its torque or force.
+/// The peak absolute rate and effort of a joint.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Peak {
     /// rad/s or m/s
@@ -52,7 +52,7 @@ pub struct Peak {
     pub effort: f64,
 }
 
-/// Simulated time and what it took.
+/// Simulated time and processing time.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Speed {
     /// s
@@ -61,45 +61,45 @@ pub struct Speed {
     pub took: f64,
 }
 
-/// The arm at postures.
+/// The arm in several postures.
 #[derive(Clone, Debug, Default)]
 pub struct Shapes {
-    /// At the postures that have a name.
+    /// In the named postures.
     pub postures: Vec<Shape>,
-    /// At those of the grid.
+    /// In the postures of the grid.
     pub grid: Vec<Shape>,
 }
 
-/// The arm at a posture, with the ellipsoids of its translation in a plane.
+/// The arm in a posture, with the ellipsoids of its translation in a plane.
 #[derive(Clone, Debug)]
 pub struct Shape {
     /// Origins of the base and of the link frames, and the tip.
     pub points: Vec<Vector3<f64>>,
     /// Velocity ellipsoid.
     pub velocity: Ellipsoid<f64, 2>,
-    /// Force ellipsoid; none at a singular posture.
+    /// Force ellipsoid; `None` in a singular posture.
     pub force: Option<Ellipsoid<f64, 2>>,
 }
 
-/// One row in the files for so many seconds; expectations see every sample.
+/// Interval between rows in files, s; expectations use every sample.
 const CSV_STEP: f64 = 0.01;
 
-/// Shorter runs, s, are written with every sample: there is something to see in them, or they were lost.
+/// Runs shorter than this, s, are written with every sample, because they are brief by design or ended early.
 const SHORT: f64 = 1.0;
 
 impl Record {
-    /// An empty record of these channels; the first one is the time.
+    /// An empty record with these channels; the first is the time.
     pub fn new(channels: Vec<Channel>) -> Record {
         let log = Log::new(channels.iter().map(|channel| channel.name.clone()));
         Record { channels, log, ..Record::default() }
     }
 
-    /// A record without samples: why there is none.
+    /// A record without samples, with the reason.
     pub fn without_samples(reason: String) -> Record {
         Record { ended: Some(Ended::untold(reason)), ..Record::default() }
     }
 
-    /// Appends a sample: `value` is asked for every channel in turn.
+    /// Appends a sample; calls `value` for every channel in order.
     pub fn sample(&mut self, mut value: impl FnMut(Quantity) -> f64) {
         let row = self.channels.iter().map(|channel| value(channel.quantity));
         self.log.push(row);
@@ -110,12 +110,12 @@ impl Record {
         &self.channels
     }
 
-    /// The samples: one column a channel.
+    /// The samples: a column per channel.
     pub fn log(&self) -> &Log {
         &self.log
     }
 
-    /// The values of a channel over time; none where it was not recorded.
+    /// The values of a channel over time; empty if it was not recorded.
     pub fn values(&self, quantity: Quantity) -> Vec<f64> {
         let Some(column) = self.channels.iter().position(|channel| channel.quantity == quantity) else { return Vec::new() };
         self.log.rows().map(|row| row[column]).collect()
@@ -126,13 +126,13 @@ impl Record {
         self.values(Quantity::Time).into_iter().zip(self.values(quantity)).collect()
     }
 
-    /// The time of the last sample, s; 0 without any.
+    /// The time of the last sample, s; 0 without samples.
     pub fn end(&self) -> f64 {
         self.log.rows().last().map_or(0.0, |row| row[0])
     }
 
-    /// The record as comma-separated values: a row every 10 ms and the last, every row of a run shorter than a second, or the numbers of
-    /// the whole run if there is no log.
+    /// The record as comma-separated values: a row every 10 ms and the last row, or every row of a run shorter than 1 s. Without a log,
+    /// it contains the numbers of the whole run.
     pub fn csv(&self) -> String {
         let mut text = String::new();
         let written = if self.log.is_empty() {

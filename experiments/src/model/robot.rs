@@ -1,4 +1,4 @@
-//! What experiments know of a robot beside its functions: names, kinds of joints, limits, parameters, the task.
+//! The data of a robot besides its functions: names, joint types, limits, parameters, task.
 
 use armgen_runtime::task::Row;
 
@@ -9,7 +9,7 @@ use super::Unit;
 pub struct Robot {
     /// Its name.
     pub name: String,
-    /// From base to tip.
+    /// The joints from base to tip.
     pub joints: Vec<Joint>,
     /// The parameter vector of its regressor.
     pub parameters: Vec<Parameter>,
@@ -22,13 +22,13 @@ pub struct Robot {
 pub struct Joint {
     /// Its name.
     pub name: String,
-    /// Whether it turns; it slides otherwise.
+    /// Whether it is revolute; otherwise prismatic.
     pub revolute: bool,
-    /// Lowest and highest position, rad or m; infinite where there is no limit.
+    /// Lowest and highest position, rad or m; infinite without a limit.
     pub position: [f64; 2],
-    /// Highest rate, rad/s or m/s; infinite where there is no limit.
+    /// Highest rate, rad/s or m/s; infinite without a limit.
     pub velocity: f64,
-    /// Highest torque or force, N m or N; infinite where there is no limit.
+    /// Highest torque or force, N m or N; infinite without a limit.
     pub effort: f64,
 }
 
@@ -47,7 +47,7 @@ impl Robot {
         self.joints.len()
     }
 
-    /// The parameters of the description.
+    /// The nominal parameter values.
     pub fn nominal(&self) -> Vec<f64> {
         self.parameters.iter().map(|parameter| parameter.nominal).collect()
     }
@@ -59,7 +59,7 @@ impl Robot {
 }
 
 impl Joint {
-    /// Of the joint variable: rad or m.
+    /// Unit of the joint variable: rad or m.
     pub fn unit(&self) -> Unit {
         if self.revolute {
             Unit::Radian
@@ -68,7 +68,7 @@ impl Joint {
         }
     }
 
-    /// Of its rate: rad/s or m/s.
+    /// Unit of the rate: rad/s or m/s.
     pub fn rate_unit(&self) -> Unit {
         if self.revolute {
             Unit::RadianPerSecond
@@ -77,7 +77,7 @@ impl Joint {
         }
     }
 
-    /// Of its torque or force: N m or N.
+    /// Unit of torque or force: N m or N.
     pub fn effort_unit(&self) -> Unit {
         if self.revolute {
             Unit::NewtonMetre

@@ -1,4 +1,4 @@
-//! Units of what is recorded.
+//! Units of recorded quantities.
 
 use std::fmt;
 
@@ -7,7 +7,7 @@ use armgen_runtime::task::Row;
 /// Units of channels.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Unit {
-    /// A pure number, or a unit that depends on the rows of the task or on the parameter.
+    /// A pure number, or a unit that depends on the task rows or on the parameter.
     None,
     /// s
     Second,
@@ -34,7 +34,7 @@ pub enum Unit {
 }
 
 impl Unit {
-    /// As it is printed; nothing for a pure number.
+    /// The printed symbol; empty for a pure number.
     pub const fn symbol(self) -> &'static str {
         match self {
             Unit::None => "",
@@ -52,7 +52,7 @@ impl Unit {
         }
     }
 
-    /// Of a row of the operational space: m or rad.
+    /// Unit of a row of the operational space: m or rad.
     pub const fn of_row(row: Row) -> Unit {
         if row.is_angular() {
             Unit::Radian

@@ -1,4 +1,4 @@
-//! `branch`: one posture of all that inverse kinematics finds, followed along the path.
+//! `branch`: a branch of the inverse kinematics, followed along the path.
 
 use armgen_codegen::document::reader::Fields;
 

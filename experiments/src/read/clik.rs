@@ -16,7 +16,7 @@ impl Reader<'_> {
         known.extend(optionals(&all));
         let keys = self.mapping(node, "`clik`", at, &known)?;
         let kind = self.choice(&keys, "algorithm", &AlgorithmKind::ALL.map(|kind| (kind.name(), kind)))?.value;
-        // The task determines how many gains there are.
+        // The number of rows determines the number of gains.
         let gains = rows.as_ref().and_then(|rows| self.rows_of_numbers(&keys, "gains", rows.len()));
         let others: Vec<&str> = all.into_iter().filter(|name| !kind.keys().contains(name)).collect();
         let what = format!("the algorithm `{}`", kind.name());

@@ -1,29 +1,29 @@
-//! The kinds of faults that only experiments have; those of keys, numbers and YAML are [`armgen_codegen::diagnostic::Code`].
+//! The kinds of faults specific to experiments; [`armgen_codegen::diagnostic::Code`] has those of keys, numbers and YAML.
 
 armgen_codegen::codes! {
     /// Kinds of faults of experiments and paths.
     pub enum Code {
-        /// The file describes a robot, or is an experiment where a path is asked for.
+        /// The file describes a robot, or is an experiment in place of a path.
         WrongFile Error "wrong-file",
-        /// The file with the path cannot be read.
+        /// The path file cannot be read.
         UnreadablePath Error "unreadable-path",
-        /// A key that has no meaning beside the others.
+        /// A key without meaning in combination with the others.
         OutOfPlace Error "out-of-place",
-        /// Keys of two kinds where one must be chosen.
+        /// Two mutually exclusive keys.
         Ambiguous Error "ambiguous",
-        /// A word that is none of those that may stand there.
+        /// A word outside the allowed set.
         UnknownWord Error "unknown-word",
         /// A number below 0.
         Negative Error "negative",
         /// A number that is 0 or below.
         NotPositive Error "not-positive",
-        /// An interval that ends before it begins, or in which nothing can be.
+        /// An interval that ends before it begins, or that contains nothing.
         EmptyInterval Error "empty-interval",
-        /// Keys that make no time law.
+        /// Keys that define no time law.
         TimeLaw Error "time-law",
         /// A segment or a turn that cannot be planned.
         Infeasible Error "infeasible",
-        /// A quantity that the run does not give.
+        /// A quantity that this run does not record.
         UnknownQuantity Error "unknown-quantity",
         /// A time beyond the end of the run.
         AfterTheEnd Error "after-the-end",
@@ -32,7 +32,7 @@ armgen_codegen::codes! {
     }
 }
 
-/// The other codes that a reader of experiments reports itself; those of YAML and of expressions come on top.
+/// The shared codes that the reader of experiments itself reports; YAML and expressions have further codes.
 pub const SHARED: [armgen_codegen::diagnostic::Code; 14] = {
     use armgen_codegen::diagnostic::Code;
     [

@@ -1,4 +1,4 @@
-//! `controller` and what belongs to it: `reference`, `load`, `sensor`, `simulation`.
+//! `controller` and its companions: `reference`, `load`, `sensor`, `simulation`.
 
 use std::collections::BTreeMap;
 
@@ -10,7 +10,7 @@ use super::values::{optionals, Allowed, Numbers, Reader};
 use super::Code;
 use crate::model::{Adaptation, ControlLaw, ControlLawKind, ControlRun, EstimateBounds, Noise, Per, ReferenceGains, Sampling};
 
-/// Integration steps of a run: some seconds of work each million.
+/// Maximum number of integration steps in a run; a million take some seconds.
 const MAX_STEPS: u128 = 20_000_000;
 
 impl Reader<'_> {
@@ -48,8 +48,8 @@ impl Reader<'_> {
         })
     }
 
-    /// K_P and K_D of the inverse kinematics that makes the joint reference: w² and 2 w with w = 1/(20 T) where none are given, so that an
-    /// error is closed without overshoot within a hundred samples, and sampling does not disturb that.
+    /// K_P and K_D of the inverse kinematics that computes the joint reference. The defaults are w² and 2 w with w = 1/(20 T): an error
+    /// decays without overshoot within a hundred samples, slowly enough that sampling has no effect.
     fn reference(&mut self, fields: &Fields<'_>, sampling: Option<&Sampling>) -> Option<ReferenceGains> {
         let Some((at, node)) = fields.get("reference") else {
             let w = 1.0 / (20.0 * sampling?.period.as_secs_f64());
@@ -75,7 +75,7 @@ impl Reader<'_> {
         (delay, Noise { position, rate, seed: self.count(&keys, "seed", 0, u32::MAX).unwrap_or(0) })
     }
 
-    /// Runge-Kutta steps a sample, and whether time is continuous.
+    /// Runge-Kutta steps per sample, and whether time is continuous.
     fn simulation(&mut self, fields: &Fields<'_>) -> (u32, bool) {
         let keys = optionals(&["substeps", "continuous"]);
         let Some(keys) = fields.get("simulation").and_then(|(at, node)| self.mapping(node, "`simulation`", at, &keys)) else {
@@ -139,7 +139,7 @@ impl Reader<'_> {
     fn adaptation(&mut self, keys: &Fields<'_>) -> Adaptation {
         let nominal = self.robot.nominal();
         let estimate = self.parameters(keys, "estimate", nominal.clone()).unwrap_or(nominal);
-        // Bounds as wide as numbers go where none is given.
+        // Without a bound, nearly the whole range of f64.
         let widest = f64::MAX / 4.0;
         let all = |x: f64| vec![x; self.robot.parameters.len()];
         let (lowest, highest) = (all(-widest), all(widest));

@@ -1,4 +1,4 @@
-//! `expect`: what should come out.
+//! `expect`: the expected results.
 
 use armgen_codegen::diagnostic::Code as Shared;
 use armgen_codegen::document::excerpt;
@@ -11,7 +11,7 @@ use super::values::{optionals, Allowed, Reader};
 use super::Code;
 use crate::model::{Body, Channel, Expectation, Take, Target};
 
-/// An expectation whose quantity is still a name.
+/// An expectation with the name of its quantity, before resolution.
 pub(super) struct Named {
     quantity: Spanned<String>,
     take: Take,
@@ -78,7 +78,7 @@ impl Reader<'_> {
     }
 
     fn target(&mut self, fields: &Fields<'_>) -> Option<Target> {
-        // A target that is given and cannot be read has been reported.
+        // An unreadable target has already been reported.
         let numbers = TARGETS.map(|name| {
             let allowed = if ["tolerance", "percent"].contains(&name) { Allowed::Positive } else { Allowed::Any };
             (fields.has(name), self.number(fields, name, allowed))
@@ -101,7 +101,7 @@ impl Reader<'_> {
         }
     }
 
-    /// Finds the channels of the quantities: those over time, or the numbers of the whole run. Times must lie within the run.
+    /// Resolves the names to channels over time or numbers of the whole run. Times must lie within the run.
     pub(super) fn resolve(&mut self, list: Vec<Named>, body: &Body) -> Vec<Expectation> {
         let (channels, numbers, end) = (body.channels(self.robot), body.numbers(self.robot), body.end());
         let mut resolved = Vec::new();

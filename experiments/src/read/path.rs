@@ -1,4 +1,4 @@
-//! Path files: where the end effector goes, how it turns, under which time laws.
+//! Path files: translation and rotation of the end effector, and their time laws.
 
 use std::time::Duration;
 
@@ -16,12 +16,12 @@ use crate::model::{Motion, Robot, Sheet};
 const LAW: [&str; 5] = ["duration", "acceleration_time", "law", "velocity", "acceleration"];
 const XYZ: &str = "x, y, z in m";
 
-/// Reads and plans the motion of a path's text.
+/// Reads a path and plans its motion.
 ///
 /// # Errors
-/// Every fault with its place.
+/// All faults with their positions.
 pub fn motion(source: &Source) -> Result<Motion, Diagnostics> {
-    // A path is for every robot.
+    // A path does not depend on a robot.
     let robot = Robot { name: String::new(), joints: Vec::new(), parameters: Vec::new(), task: Vec::new() };
     let mut diagnostics = Diagnostics::new();
     let root = yaml::read(source, &mut diagnostics);
@@ -39,13 +39,13 @@ pub fn motion(source: &Source) -> Result<Motion, Diagnostics> {
     motion.filter(|_| !diagnostics.has_errors()).ok_or(diagnostics)
 }
 
-/// The place of a key that only experiments have.
+/// The position of a key that occurs only in experiments.
 fn key_of_an_experiment(root: &Node) -> Option<Span> {
     let Kind::Mapping(entries) = &root.kind else { return None };
     entries.iter().find(|(key, _)| ["robot", "expect", "path"].contains(&key.value.as_str())).map(|(key, _)| key.span)
 }
 
-/// Why a segment cannot be, in words, and what to do.
+/// The reason why a segment is infeasible, and a remedy.
 fn explain(fault: PlanFault) -> (&'static str, &'static str) {
     match fault {
         PlanFault::NotFinite => ("a number is not finite", "write finite numbers"),
@@ -83,7 +83,7 @@ fn explain(fault: PlanFault) -> (&'static str, &'static str) {
     }
 }
 
-/// The time laws that have a name.
+/// The time laws with names.
 #[derive(Clone, Copy, PartialEq)]
 enum TimeLawKind {
     Trapezoidal,
@@ -131,7 +131,7 @@ impl Reader<'_> {
         Some(Motion { trajectory: OperationalTrajectory { path: path?, orientation: orientation? }, frame, sheet })
     }
 
-    /// Reports the element that cannot be planned, or what all of them start from.
+    /// Reports an element that cannot be planned, or the common start of all elements.
     fn cannot(&mut self, element: &str, places: &[Span], start: Span, error: PlanError) {
         let (why, help) = explain(error.fault);
         let (at, what) = match error.segment.checked_sub(1).and_then(|i| places.get(i)) {
@@ -257,7 +257,7 @@ impl Reader<'_> {
         Some(Segment::arc_to(centre?, axis, sweep?, to, self.time_law(fields)?))
     }
 
-    /// The axis of an arc or a turn: z0 where none is given.
+    /// The axis of an arc or a turn; z0 by default.
     fn axis(&mut self, fields: &Fields<'_>) -> Option<[f64; 3]> {
         match fields.has("axis") {
             true => self.array(fields, "axis", "x, y, z", Allowed::Any),

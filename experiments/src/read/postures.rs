@@ -11,7 +11,7 @@ use armgen_runtime::task::Row;
 use super::values::{Allowed, Numbers, Reader};
 use crate::model::{Posture, Postures};
 
-/// Postures of a grid.
+/// Maximum number of postures in a grid.
 const MAX_POSTURES: usize = 10_000;
 
 const HELP: &str = "write one `- {name: ..., q: [...]}` per posture";
@@ -46,7 +46,7 @@ impl Reader<'_> {
         Some(Postures { list, plane, grid })
     }
 
-    /// Names begin those of the quantities and stand in the log: `NAME.w,0.25`. Those `seen` before are taken.
+    /// Checks a name, which prefixes quantities and log columns: `NAME.w,0.25`. It must differ from those `seen` before.
     fn name(&mut self, name: &Spanned<String>, seen: &mut BTreeMap<String, Span>) {
         let shown = excerpt(&name.value);
         let fits = |first: bool| move |c: char| c == '_' || c.is_alphabetic() || !first && c.is_numeric();

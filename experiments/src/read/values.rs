@@ -1,4 +1,4 @@
-//! Values of experiment files: numbers, durations, lists and words under their keys; what does not fit is reported, and reading goes on.
+//! Values of experiment files: numbers, durations, lists and words under their keys. Reading continues after a reported fault.
 
 use std::time::Duration;
 
@@ -13,7 +13,7 @@ use armgen_runtime::task::Row;
 use super::Code;
 use crate::model::Robot;
 
-/// What numbers are allowed.
+/// The allowed range of numbers.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Allowed {
     Any,
@@ -21,16 +21,16 @@ pub(super) enum Allowed {
     Positive,
 }
 
-/// A list of numbers: how many, of what, and which numbers.
+/// The length, meaning and allowed range of a list of numbers.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Numbers<'w> {
     pub(super) len: usize,
-    /// What each stands for, for the help: "one per joint".
+    /// The meaning of an element, for the help: "one per joint".
     pub(super) each: &'w str,
     pub(super) allowed: Allowed,
 }
 
-/// The reader of documents, and the robot that an experiment is for.
+/// The document reader, with the robot of the experiment.
 pub(super) struct Reader<'r> {
     pub(super) document: reader::Reader<'r>,
     pub(super) robot: &'r Robot,
@@ -56,12 +56,12 @@ impl Reader<'_> {
         self.document.report(code, span, message, label, help);
     }
 
-    /// The keys of a mapping that stands under `at`; unknown and missing ones are reported.
+    /// The keys of the mapping at `at`; reports unknown and missing keys.
     pub(super) fn mapping<'n>(&mut self, node: &'n Node, what: &str, at: Span, keys: &[Key]) -> Option<Fields<'n>> {
         self.document.mapping(node, what, at, keys)
     }
 
-    /// Reports keys that have no meaning here.
+    /// Reports keys that are meaningless here.
     pub(super) fn out_of_place(&mut self, fields: &Fields<'_>, names: &[&str], why: &str) {
         for name in names {
             if let Some((span, _)) = fields.get(name) {
@@ -71,7 +71,7 @@ impl Reader<'_> {
         }
     }
 
-    /// Reports a key that is required beside others, where it is missing.
+    /// Reports the absence of a key that other keys require.
     pub(super) fn require(&mut self, fields: &Fields<'_>, name: &str, what: &str, example: &str) {
         if !fields.has(name) {
             let message = format!("{what} lacks `{name}`");
@@ -100,7 +100,7 @@ impl Reader<'_> {
         None
     }
 
-    /// The number under a key; `None` where there is no such key.
+    /// The number under a key; `None` if the key is absent.
     pub(super) fn number(&mut self, fields: &Fields<'_>, name: &str, allowed: Allowed) -> Option<f64> {
         let (at, node) = fields.get(name)?;
         self.value(node, at, name, allowed).map(|x| x.value)
@@ -131,7 +131,7 @@ impl Reader<'_> {
         Some(x.value as u32)
     }
 
-    /// A list of exactly so many numbers.
+    /// A list of exactly `len` numbers.
     pub(super) fn list(&mut self, node: &Node, at: Span, name: &str, wanted: Numbers<'_>) -> Option<Vec<f64>> {
         let Numbers { len, each, allowed } = wanted;
         let help = format!("write {len} numbers in brackets, {each}");
@@ -145,7 +145,7 @@ impl Reader<'_> {
         values.into_iter().map(|value| value.map(|x| x.value)).collect()
     }
 
-    /// The list of numbers under a key; of gains and limits one number stands for as many equal ones.
+    /// The list of numbers under a key; for gains and limits a single number means equal entries.
     pub(super) fn numbers(&mut self, fields: &Fields<'_>, name: &str, wanted: Numbers<'_>) -> Option<Vec<f64>> {
         let (at, node) = fields.get(name)?;
         if let (Kind::Scalar(_), Allowed::Positive | Allowed::NotNegative) = (&node.kind, wanted.allowed) {
@@ -154,7 +154,7 @@ impl Reader<'_> {
         self.list(node, at, name, wanted)
     }
 
-    /// Under a key: exactly `N` numbers.
+    /// Exactly `N` numbers under a key.
     pub(super) fn array<const N: usize>(
         &mut self,
         fields: &Fields<'_>,
@@ -171,7 +171,7 @@ impl Reader<'_> {
         self.numbers(fields, name, Numbers { len: self.robot.dof(), each: &each, allowed: Allowed::Any })
     }
 
-    /// Positive numbers under a key, one per row of the task.
+    /// Positive numbers under a key, a number per row of the task.
     pub(super) fn rows_of_numbers(&mut self, fields: &Fields<'_>, name: &str, rows: usize) -> Option<Vec<f64>> {
         self.numbers(fields, name, Numbers { len: rows, each: "one per row of the task", allowed: Allowed::Positive })
     }
@@ -187,7 +187,7 @@ impl Reader<'_> {
         self.document.text(node, at, name, "a text", "write words on one line")
     }
 
-    /// One of a few words under a key.
+    /// A word from a fixed set under a key.
     pub(super) fn choice<T: Copy>(&mut self, fields: &Fields<'_>, name: &str, words: &[(&'static str, T)]) -> Option<Spanned<T>> {
         let (at, node) = fields.get(name)?;
         let names: Vec<String> = words.iter().map(|(word, _)| format!("`{word}`")).collect();
@@ -199,7 +199,7 @@ impl Reader<'_> {
         self.choice(fields, name, &[("true", true), ("false", false)]).map(|word| word.value)
     }
 
-    /// Different rows of the operational space.
+    /// Distinct rows of the operational space.
     pub(super) fn rows(&mut self, fields: &Fields<'_>, name: &str) -> Option<Vec<Row>> {
         const WORDS: [(&str, Row); 6] =
             [("x", Row::X), ("y", Row::Y), ("z", Row::Z), ("rx", Row::Rx), ("ry", Row::Ry), ("rz", Row::Rz)];
@@ -223,7 +223,7 @@ impl Reader<'_> {
         Some(rows)
     }
 
-    /// A mapping of names of parameters to numbers: `values` with those in place of what they hold; `None` where there is no such key.
+    /// A mapping from parameter names to numbers, merged into `values`; `None` if the key is absent.
     pub(super) fn parameters(&mut self, fields: &Fields<'_>, name: &str, mut values: Vec<f64>) -> Option<Vec<f64>> {
         let (at, node) = fields.get(name)?;
         let robot = self.robot;

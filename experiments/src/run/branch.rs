@@ -1,4 +1,4 @@
-//! One posture of all that inverse kinematics finds, followed along a path before anything moves.
+//! A branch of the inverse kinematics, followed along a path before the run.
 
 use std::time::Duration;
 
@@ -9,11 +9,11 @@ use super::instance::Functions;
 use super::{Instance, Run};
 use crate::model::{Body, BranchRun, Ended, JointQuantity, Quantity, Record, Robot};
 
-/// A branch that has been followed.
+/// A followed branch.
 struct Branch<'a, const N: usize> {
     body: &'a Body,
     robot: &'a Robot,
-    /// The postures on the way, each with the part of the path and with its manipulability.
+    /// The postures along the path, each with its path parameter in [0, 1] and its manipulability.
     way: Vec<(f64, SVector<f64, N>, f64)>,
     duration: f64,
     postures: usize,
@@ -49,10 +49,10 @@ impl<const N: usize> Run for Branch<'_, N> {
 }
 
 impl<R: Functions<N, P>, W, const N: usize, const M: usize, const P: usize> Instance<R, W, N, M, P> {
-    /// Follows the branch.
+    /// Follows the branch along the path.
     ///
     /// # Errors
-    /// Where the robot has no inverse kinematics, or there is no start.
+    /// The robot has no inverse kinematics, or there is no start.
     pub(super) fn prepare_branch<'a>(&'a self, run: &'a BranchRun, body: &'a Body) -> Result<Box<dyn Run + 'a>, String> {
         let solver = self.solver.ok_or("the robot has no inverse kinematics: `armgen show ROBOT inverse_kinematics` says why")?;
         let start = self.start(&run.start, &run.sampling)?;
@@ -62,7 +62,7 @@ impl<R: Functions<N, P>, W, const N: usize, const M: usize, const P: usize> Inst
         let followed = (solver.follow)(&path, &start, &mut |s, q| way.push((s, *q, self.manipulability(q))));
         let joint = |joint: usize| &self.robot.joints[joint].name;
         let ended = followed.end.map(|end| {
-            // Else it does not end there: it has not begun, or could not be followed.
+            // Other reasons mean that the branch did not begin or that following failed.
             let is_end =
                 matches!(end, BranchEnd::Unreachable | BranchEnd::Singular | BranchEnd::Continuum | BranchEnd::Limit { .. });
             let why = match end {

@@ -18,7 +18,7 @@ use super::instance::{sized, task_of, Functions};
 use super::Instance;
 use crate::model::{Algorithm, Body, ClikRun, Ended, Joint, JointQuantity, Quantity, Record};
 
-/// Rate, rad/s or m/s, at which a motion is cut where the description gives no limit, or a higher one.
+/// Rate limit, rad/s or m/s, if the description has none or a higher one.
 const FASTEST: f64 = 100.0;
 
 /// Errors of rows below this, m or rad, count as converged.
@@ -39,7 +39,7 @@ macro_rules! with_rows {
     };
 }
 
-/// The manipulability of rows chosen in the file, or nothing to be climbed.
+/// Maximises the manipulability of rows chosen in the file; `None` maximises nothing.
 struct Climb<'r>(Option<&'r [Row]>);
 
 impl<R: Kinematics<N, Real = f64>, const N: usize> Objective<R, N> for Climb<'_> {
@@ -57,7 +57,7 @@ impl<R: Kinematics<N, Real = f64>, const N: usize> Objective<R, N> for Climb<'_>
     }
 }
 
-/// The limits of the description, infinite positions where it gives none; rates of [`FASTEST`] there.
+/// The limits of the description: without a limit, positions are unbounded and rates limited to [`FASTEST`].
 pub(super) fn limits<const N: usize>(joints: &[Joint]) -> Result<JointLimits<f64, N>, SettingError> {
     let position = |side: usize| std::array::from_fn(|i| joints[i].position[side]);
     JointLimits::rates(std::array::from_fn(|i| joints[i].velocity.min(FASTEST)))?.with_range(position(0), position(1))
@@ -71,7 +71,7 @@ fn stopped(t: f64, error: ClikError) -> String {
     format!("ended at {t} s: {error}")
 }
 
-/// One sample of inverse kinematics.
+/// A sample of inverse kinematics.
 struct Sample<'s, const N: usize> {
     t: Duration,
     q: &'s SVector<f64, N>,
@@ -97,7 +97,7 @@ impl<const N: usize> Sample<'_, N> {
 }
 
 impl<R: Functions<N, P>, W, const N: usize, const M: usize, const P: usize> Instance<R, W, N, M, P> {
-    /// Second-order inverse kinematics of the task of the robot, as it makes joint references, too.
+    /// Second-order inverse kinematics for the robot's task, which also computes joint references.
     pub(super) fn second_order(
         &self,
         (k_p, k_d): (&[f64], &[f64]),
@@ -129,14 +129,14 @@ impl<R: Functions<N, P>, W, const N: usize, const M: usize, const P: usize> Inst
         record
     }
 
-    /// The time at which a rate was first cut, s; infinite if never.
+    /// Returns the time of the first limited rate, s; infinite if there is no such time.
     fn follow_first_order<const K: usize>(&self, run: &ClikRun, record: &mut Record) -> Result<f64, String> {
         let period = run.sampling.period;
         let task = task_of::<K>(&run.rows).ok_or("no task")?;
         let gains: [f64; K] = sized(&run.gains);
         let transpose = JacobianTranspose::new(gains).map_err(refused)?;
         let is_transpose = run.algorithm == Algorithm::Transpose;
-        // Behind a pointer: the loop below is compiled once for each number of rows.
+        // A trait object: the loop below is compiled only once per number of rows.
         let algorithm: Box<dyn ClikAlgorithm<R, N, K> + '_> = match &run.algorithm {
             Algorithm::Inverse | Algorithm::SecondOrder { .. } => Box::new(JacobianInverse::new(gains).map_err(refused)?),
             Algorithm::Transpose => Box::new(transpose),
@@ -205,7 +205,7 @@ impl<R: Functions<N, P>, W, const N: usize, const M: usize, const P: usize> Inst
 mod tests {
     use super::*;
 
-    /// A joint that turns without end leaves the others their limits.
+    /// A continuous joint does not remove the limits of the others.
     #[test]
     fn a_joint_without_limits_takes_none_from_the_others() {
         let joint = |position| Joint { name: String::new(), revolute: true, position, velocity: 1.0, effort: f64::INFINITY };

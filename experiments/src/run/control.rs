@@ -1,4 +1,4 @@
-//! A controller along a path: first its sampled loop, linearised; then the run, with a plant that has parameters of its own.
+//! A controller along a path: first the linearised sampled loop, then the run, whose plant has its own parameters.
 
 use std::slice::from_ref;
 use std::time::{Duration, Instant};
@@ -25,19 +25,19 @@ use crate::model::{
     Record, ReferenceGains, Robot, Speed,
 };
 
-/// Distance between the postures at which the loop is linearised.
+/// Time between the postures at which the loop is linearised.
 const POSTURE_STEP: Duration = Duration::from_millis(250);
-/// Divisors of the period at which an unstable loop is analysed again.
+/// Divisors of the period for further analyses of an unstable loop.
 const SHORTER: [u32; 6] = [2, 5, 10, 20, 50, 100];
-/// Samples of the longest simulation at a shorter period.
+/// Maximum number of samples in a simulation at a shorter period.
 const MAX_REHEARSED: u128 = 400_000;
-/// Joint error, rad or m, above which `lost_at` is recorded ([`LARGE_ERROR`]), and above which the run is aborted ([`ABORT_ERROR`]).
+/// Joint error, rad or m, above which the run records `lost_at` ([`LARGE_ERROR`]), and above which it aborts ([`ABORT_ERROR`]).
 const LARGE_ERROR: f64 = 0.1;
 const ABORT_ERROR: f64 = 1.0;
 
-/// A sampled controller behind a pointer, so that linearisation and simulation are compiled once for all of them.
+/// A sampled controller as a trait object, so that linearisation and simulation are compiled once for all controllers.
 trait SampledLaw<R: Functions<N, P>, W: Functions<N, P>, const N: usize, const P: usize>: Send {
-    /// The torque of one sample: which of the two references counts is the controller's affair.
+    /// The torque for a sample; the controller chooses the reference it uses.
     fn torque(
         &mut self,
         model: &R,
@@ -46,13 +46,13 @@ trait SampledLaw<R: Functions<N, P>, W: Functions<N, P>, const N: usize, const P
         measured: &State<f64, N>,
     ) -> Result<SVector<f64, N>, ControlError>;
 
-    /// What it told before the last torque, in the order of [`ControlLawKind::watched`].
+    /// The watched values before the last torque, in the order of [`ControlLawKind::watched`].
     fn watched(&self) -> &[f64];
 
-    /// The controller, to be linearised.
+    /// The controller, for linearisation at rest.
     fn as_linearised_at_rest(&self) -> &dyn LineariseAtRest<W, R, N>;
 
-    /// How the motion goes.
+    /// Analyses the stability along the motion.
     fn analyse_motion(
         &self,
         analysis: &MotionAnalysis<'_, W, f64, N>,
@@ -61,7 +61,7 @@ trait SampledLaw<R: Functions<N, P>, W: Functions<N, P>, const N: usize, const P
     ) -> Result<MotionReport<f64>, StabilityError>;
 }
 
-/// References of one of the two kinds.
+/// References in joint space or operational space.
 trait OfKind<const N: usize>: Sized {
     fn of<'s>(joints: &'s [JointReference<f64, N>], operational: &'s [OperationalReference<f64>]) -> &'s [Self];
 }
@@ -78,7 +78,7 @@ impl<const N: usize> OfKind<N> for OperationalReference<f64> {
     }
 }
 
-/// A controller, and what it tells of a sample.
+/// A controller with the function that reads its watched values.
 struct Watched<C, F> {
     controller: C,
     watch: F,
@@ -124,39 +124,39 @@ where
     }
 }
 
-/// The law of a run: a sampled one, or the adaptive one in continuous time.
+/// The control law of a run: sampled, or adaptive in continuous time.
 enum Drive<'a, R, W, const N: usize, const P: usize> {
     Sampled(Box<dyn SampledLaw<R, W, N, P> + 'a>),
     Continuous(Adaptive<f64, N, P>),
 }
 
-/// A run of which is known what can be known before anything moves.
+/// A run with its analysis.
 struct Prepared<'a, R, W, const N: usize, const M: usize, const P: usize> {
     arm: &'a Instance<R, W, N, M, P>,
     run: &'a ControlRun,
     body: &'a Body,
-    /// Where it begins.
+    /// The start.
     start: SVector<f64, N>,
     drive: Drive<'a, R, W, N, P>,
-    /// What is desired at each sample.
+    /// Joint references, a reference per sample.
     joints: Vec<JointReference<f64, N>>,
     operational: Vec<OperationalReference<f64>>,
     analysis: Analysis,
-    /// The radius with one sample of delay, where it is asked for.
+    /// The spectral radius with a sample of delay, if an expectation needs it.
     delayed: Option<f64>,
 }
 
-/// What is known of the sampled loop.
+/// Stability of the sampled loop.
 struct Analysis {
     /// At rest and in motion.
     report: Report<f64>,
-    /// About the estimate from which it begins.
+    /// Linearised about the initial estimate.
     at_start: Report<f64>,
-    /// Where it does not hold: the largest period of [`SHORTER`] at which it does, if any, s; and the shortest one tried.
+    /// For an unstable loop: the largest stable period of [`SHORTER`], if any, and the shortest period tried; s.
     holds_at: Option<(Option<f64>, f64)>,
 }
 
-/// What is desired at every sample, and some postures on the way.
+/// The references for every sample, and some postures along the path.
 type Desired<const N: usize> = (Vec<JointReference<f64, N>>, Vec<OperationalReference<f64>>, Vec<SVector<f64, N>>);
 
 impl<R, W, const N: usize, const M: usize, const P: usize> Instance<R, W, N, M, P>
@@ -164,7 +164,7 @@ where
     R: Functions<N, P>,
     W: Functions<N, P>,
 {
-    /// The joint reference, and the stability of the sampled loop along the path.
+    /// Computes the joint reference, and analyses the stability of the sampled loop along the path.
     pub(super) fn prepare_control<'a>(
         &'a self,
         run: &'a ControlRun,
@@ -198,7 +198,7 @@ where
         let mut report = rest(run.delay)?;
         if let Drive::Sampled(law) = &drive {
             let analysis = Self::motion_analysis(run, begins, &plant, &joints, period);
-            // An analysis in motion that fails is left out; the one at rest is still reported.
+            // If the analysis in motion fails, the report still has the analysis at rest.
             report.motion = law.analyse_motion(&analysis, &self.nominal, &operational).ok();
         }
         let holds_at = if report.holds() || run.continuous { None } else { Some(self.shorter(run, begins, &plant, &postures)) };
@@ -226,7 +226,7 @@ where
         MotionAnalysis { plant, joints, start: State::at_rest(begins), period, delay: Delay::samples(run.delay) }
     }
 
-    /// The largest period of [`SHORTER`] at which the loop holds, s, and the shortest that was tried.
+    /// The largest stable period of [`SHORTER`], s, and the shortest that was tried.
     fn shorter(&self, run: &ControlRun, begins: SVector<f64, N>, plant: &W, postures: &[SVector<f64, N>]) -> (Option<f64>, f64) {
         let mut shortest = run.sampling.period.as_secs_f64();
         for part in SHORTER {
@@ -277,7 +277,8 @@ where
         Ok((joints, operational, postures))
     }
 
-    /// The controller of a law. A new one also needs `ControlLawKind` (model/law.rs), and `Linearise`, `LineariseAtRest` and `LineariseInMotion` in the runtime.
+    /// The controller of a law. A new controller also needs a `ControlLawKind` (model/law.rs), and in the runtime `Linearise`,
+    /// `LineariseAtRest` and `LineariseInMotion`.
     fn sampled_law<'a>(&self, law: &ControlLaw, period: f64) -> Result<Box<dyn SampledLaw<R, W, N, P> + 'a>, SettingError>
     where
         R: 'a,
@@ -320,7 +321,7 @@ where
     }
 }
 
-/// A controller that has nothing to tell.
+/// A controller without watched values.
 fn unwatched<'a, R, W, C, const N: usize, const P: usize>(controller: C) -> Box<dyn SampledLaw<R, W, N, P> + 'a>
 where
     R: Functions<N, P>,
@@ -349,26 +350,27 @@ fn adaptive<const N: usize, const P: usize>(law: &ControlLaw, period: f64) -> Re
     Ok(if adaptation.is_on { controller } else { controller.with_frozen([true; P]) })
 }
 
-/// Why a controller gives no torque any more.
+/// The reasons why a controller stops.
 #[derive(Debug)]
 enum Stop {
     Control(ControlError),
-    /// This joint is off by more than [`ABORT_ERROR`].
+    /// The error of this joint exceeds [`ABORT_ERROR`].
     GivenUp(usize),
 }
 
-/// Whether a joint is off so much that the run ends.
+/// Ends the run if a joint error exceeds the abort limit.
 fn off<const N: usize>(desired: &SVector<f64, N>, found: &SVector<f64, N>) -> Result<(), Stop> {
     let error = (desired - found).abs();
     let joint = error.imax();
-    // What is not finite is the affair of the run.
+    // The run itself detects values that are not finite.
     if error[joint] > ABORT_ERROR && error[joint].is_finite() {
         return Err(Stop::GivenUp(joint));
     }
     Ok(())
 }
 
-/// How a run ended. `lost_at` tells of it where a joint was given up or diverged and the arm itself, not its measurement alone, was lost.
+/// The early end of a run. `lost_at` reports it if a joint was given up or diverged, and if the arm itself was lost, not only its
+/// measurement.
 fn ended(error: RunError<Stop>, is_lost: bool, robot: &Robot) -> Ended {
     use Divergence::{Position, Rate};
     let of_a_joint = match &error {
@@ -379,7 +381,7 @@ fn ended(error: RunError<Stop>, is_lost: bool, robot: &Robot) -> Ended {
     Ended { why: explain(error, robot), told_by: (of_a_joint && is_lost).then_some(Quantity::LostAt) }
 }
 
-/// Why a run ended, when, and which joint it was.
+/// The reason and the time of an early end, with the joint.
 fn explain(error: RunError<Stop>, robot: &Robot) -> String {
     let s = |t: Duration| format!("{} s", number(t.as_secs_f64()));
     let joint = |i: usize| (format!("joint `{}`", robot.joints[i].name), &robot.joints[i]);
@@ -407,7 +409,7 @@ where
     R: Functions<N, P>,
     W: Functions<N, P>,
 {
-    /// What has to be said of an unstable loop: at rest, in motion, and the period that would hold.
+    /// The warning about an unstable loop: at rest, in motion, and a stable period.
     fn warning(&self) -> Option<String> {
         let Analysis { report, holds_at, .. } = &self.analysis;
         let delay = match self.run.delay {
@@ -422,7 +424,7 @@ where
                 StablePeriod::AtLeast(limit) => format!("it holds at {} ms", number(limit * 1e3)),
                 StablePeriod::NotEvenAt(limit) => format!("not even {} ms would hold", number((limit * 1e7).round() / 1e4)),
             };
-            // Two decimals, more where these would say 1.00.
+            // Two decimals; more if two decimals would show 1.00.
             let radius = report.spectral_radius;
             let radius = if radius < 1.005 { format!("{radius:.6}") } else { format!("{radius:.2}") };
             said.push(match report.without_rest {
@@ -513,7 +515,7 @@ where
     }
 }
 
-/// Drives the arm and writes the log.
+/// Runs the arm and writes the log.
 struct Writer<'a, R, W, const N: usize, const M: usize, const P: usize> {
     arm: &'a Instance<R, W, N, M, P>,
     begins: SVector<f64, N>,
@@ -521,7 +523,7 @@ struct Writer<'a, R, W, const N: usize, const M: usize, const P: usize> {
     operational: &'a [OperationalReference<f64>],
     record: Record,
     lost_at: f64,
-    /// Whether a joint is off by more than [`LARGE_ERROR`] at the last sample.
+    /// Whether a joint error exceeds [`LARGE_ERROR`] in the last sample.
     is_lost: bool,
 }
 
@@ -560,7 +562,7 @@ where
         let mut options = RunOptions::new(run.sampling.period, run.sampling.duration);
         options.integrator = Integrator::RungeKutta4 { substeps: run.substeps };
         options.sensor = Sensor::new(run.delay, run.noise.position, run.noise.rate, u64::from(run.noise.seed));
-        // Both the controller and the log look at it, one after the other.
+        // The controller and the log use it in turn.
         let law = std::cell::RefCell::new(law);
         let (model, joints, operational, mut index) = (&self.arm.nominal, self.joints, self.operational, 0);
         let controller = |_: Duration, measured: &State<f64, N>| {

@@ -1,7 +1,7 @@
-//! From posture to posture within the limits of the joints, by inverse dynamics in joint space: for any arm.
+//! Motion between postures within the joint limits by inverse dynamics in joint space, for any arm.
 //!
-//! Each joint in turn, then all together, move to either side of the posture in which the arm begins: the middle of its ranges, and zero
-//! where a joint has none. The pace is what the velocity limits allow, and is reduced until the efforts stay within theirs.
+//! Each joint in turn, then all together, move to both sides of the initial posture: the middle of a joint's range, or zero without a
+//! range. The velocity limits set the pace, which is then reduced until the efforts are within their limits.
 
 use std::time::Duration;
 
@@ -20,23 +20,23 @@ type Postures<const N: usize> = JointTrajectory<f64, N, Vec<JointSegment<f64, N>
 
 /// The sampling period.
 const PERIOD: Duration = Duration::from_millis(1);
-/// Rates and accelerations where the description gives no limit: rad/s or m/s, and per s.
+/// Velocity and acceleration without limits in the description: rad/s or m/s, and rad/s² or m/s².
 const TURNING: (f64, f64) = (1.5, 4.0);
 const SLIDING: (f64, f64) = (0.25, 1.0);
-/// How far a joint goes to either side where its range allows it.
+/// Amplitude of a joint if its range is wide enough: rad, and m.
 const SWING: f64 = 0.5;
 const STROKE: f64 = 0.1;
-/// Part of a limit that is used.
+/// Used fraction of a limit.
 const PART: f64 = 0.8;
-/// How often the pace is halved until the efforts are within their limits.
+/// Maximum number of halvings of the pace to bring the efforts within their limits.
 const HALVINGS: u32 = 6;
-/// With a model that is right, sampling alone makes the joints miss: by less than this, rad or m.
+/// With an exact model, sampling alone causes a joint error below this, rad or m.
 const EXPECTED: f64 = 1e-4;
-/// Diagonals of K_P, 1/s², and of K_D, 1/s: critically damped.
+/// Diagonals of K_P, 1/s², and of K_D, 1/s: critical damping.
 const GAINS: (f64, f64) = (1e4, 200.0);
-/// Steps of the integrator a sample: at least, and at most.
+/// Minimum and maximum number of integrator steps per sample.
 const STEPS: [u32; 2] = [4, 4096];
-/// The classical method is stable where a step times the fastest decay is at most 2.78.
+/// The classical Runge-Kutta method is stable if the step times the fastest decay rate is at most 2.78.
 const DECAY_A_STEP: f64 = 2.0;
 /// Time at rest at the end.
 const HOLD: Duration = Duration::from_millis(500);
@@ -92,8 +92,8 @@ impl<R: Functions<N, P>, W, const N: usize, const M: usize, const P: usize> Inst
         Ok(Demonstration { summary, fault: self.missed(&record, &postures), record })
     }
 
-    /// How many steps of the integrator a sample needs: friction that grows with the rate takes a light joint's motion away at rates of up to the
-    /// largest row sum of B⁻¹ ∂F/∂dq, which for wrists of data sheets can be 10⁵ per second.
+    /// The number of integrator steps per sample. Viscous friction damps a light joint at rates of up to the largest row sum of B⁻¹ ∂F/∂dq,
+    /// which can reach 10⁵ per second for wrists in data sheets.
     fn steps_a_sample(&self, postures: &[SVector<f64, N>]) -> u32 {
         let slope = self.friction_slope();
         let decays = self.inverse_inertias(postures).map(|(_, inverse)| (inverse * slope).max());
@@ -101,7 +101,7 @@ impl<R: Functions<N, P>, W, const N: usize, const M: usize, const P: usize> Inst
         (steps.ceil() as u32).clamp(STEPS[0], STEPS[1])
     }
 
-    /// The postures, each with the sizes of the entries of B⁻¹, where B is positive.
+    /// The postures with positive definite B, each with the absolute values of the entries of B⁻¹.
     fn inverse_inertias<'a>(
         &'a self,
         postures: &'a [SVector<f64, N>],
@@ -109,7 +109,7 @@ impl<R: Functions<N, P>, W, const N: usize, const M: usize, const P: usize> Inst
         postures.iter().filter_map(|q| Some((q, self.nominal.inertia_matrix(q).cholesky()?.inverse().abs())))
     }
 
-    /// ∂F/∂dq at rates of a motion, Coulomb friction apart: N m s/rad or N s/m.
+    /// |∂F/∂dq| between rates 1 and 2, without Coulomb friction: N m s/rad or N s/m.
     fn friction_slope(&self) -> SVector<f64, N> {
         let at = |rate: f64| self.nominal.friction(&SVector::repeat(rate));
         (at(2.0) - at(1.0)).abs()
@@ -123,7 +123,7 @@ impl<R: Functions<N, P>, W, const N: usize, const M: usize, const P: usize> Inst
         all.map(|quantity| Channel::new(quantity, &self.robot)).collect()
     }
 
-    /// What the sampled loop is like at these postures; an unstable one is an error, with the period that would hold.
+    /// A summary of the loop's stability in these postures; an error, with a stable period, if it is unstable.
     fn stability(&self, controller: &dyn LineariseAtRest<R, R, N>, postures: &[SVector<f64, N>]) -> Result<String, String> {
         let report = analyse(&self.nominal, &self.nominal, controller, postures, PERIOD.as_secs_f64(), Delay::NONE)
             .map_err(|error| format!("the sampled loop has no spectral radius: {error}"))?;
@@ -142,7 +142,7 @@ impl<R: Functions<N, P>, W, const N: usize, const M: usize, const P: usize> Inst
         }
     }
 
-    /// The first joint that misses by more than can be explained.
+    /// The first joint whose error exceeds its bound.
     fn missed(&self, record: &Record, postures: &[SVector<f64, N>]) -> Option<String> {
         let bounds = self.bounds(postures);
         self.robot.joints.iter().enumerate().find_map(|(i, joint)| {
@@ -156,11 +156,10 @@ impl<R: Functions<N, P>, W, const N: usize, const M: usize, const P: usize> Inst
         })
     }
 
-    /// What the joints may miss by, rad or m.
+    /// Bounds of the joint errors, rad or m.
     ///
-    /// A held torque has the wrong sign of Coulomb friction, with what grows with the load, while a rate passes zero: a disturbance of up
-    /// to 2 F_c, which moves the error by no more than B⁻¹ 2 F_c / K_P. Of friction that grows with the rate it has what that was up to a
-    /// period before: less by ∂F/∂dq · ddq T.
+    /// When a rate passes zero, the held torque has Coulomb and load-dependent friction with the wrong sign. This disturbance of up to 2 F_c
+    /// changes the error by at most B⁻¹ 2 F_c / K_P. Viscous friction lags by at most a period, which adds ∂F/∂dq · ddq T.
     fn bounds(&self, postures: &[SVector<f64, N>]) -> SVector<f64, N> {
         let creeping = SVector::repeat(f64::MIN_POSITIVE);
         let acceleration: SVector<f64, N> =
@@ -174,7 +173,7 @@ impl<R: Functions<N, P>, W, const N: usize, const M: usize, const P: usize> Inst
         })
     }
 
-    /// The trajectory at the greatest of a few paces that keeps the efforts within their limits, and a line if that is not the full one.
+    /// The trajectory at the fastest of a few paces with efforts within their limits, and a line about a reduced pace.
     fn within_efforts(&self) -> Result<(Postures<N>, Option<String>), String> {
         let mut pace = 1.0;
         let mut beyond = String::new();
@@ -187,11 +186,11 @@ impl<R: Functions<N, P>, W, const N: usize, const M: usize, const P: usize> Inst
             }
             pace /= 2.0;
         }
-        // Gravity alone asks for more than a joint gives: the data sheet says so, and the motion is shown all the same.
+        // Gravity alone exceeds a limit. The summary reports it, and the motion still runs.
         Ok((self.plan(pace)?, Some(format!("even slow motion asks for more than a limit: {beyond}"))))
     }
 
-    /// The joint whose effort exceeds its limit most on the way, and by how much.
+    /// The joint with the largest excess over its effort limit, described in words.
     fn beyond_efforts(&self, trajectory: &Postures<N>) -> Option<String> {
         let mut worst: Option<(f64, usize, f64)> = None;
         for k in 0..=trajectory.duration().as_millis() / 10 {
@@ -235,7 +234,7 @@ impl<R: Functions<N, P>, W, const N: usize, const M: usize, const P: usize> Inst
         JointTrajectory::plan(home, segments).map_err(|error| format!("the demonstration cannot be planned: {error}"))
     }
 
-    /// Where the joints begin, and how far they go to either side.
+    /// The initial positions of the joints, and their amplitudes.
     fn home_and_swing(&self) -> ([f64; N], [f64; N]) {
         let joints = &self.robot.joints;
         let full = |i: usize| if joints[i].revolute { SWING } else { STROKE };

@@ -1,10 +1,10 @@
-//! What can be seen of an experiment before anything moves: a start outside the limits, a path beyond reach, a start off the path.
+//! Warnings before a run: a start outside the limits, a path out of reach, a start off the path.
 //!
-//! Reach is bounded by the chain of frame origins stretched out, from the origin of the base on: |p_e| <= max |p_1| + sum |p_{i+1} - p_i|.
-//! These lengths do not change where joints turn, and change by the stroke where they slide. |p_1| changes where the first joint turns about an
-//! axis that passes the origin of the base at a distance r_0: with p_1 at the distance r from the axis, and h along it from the foot of the
-//! perpendicular on it, max |p_1|^2 = (r_0 + r)^2 + h^2. A path farther from the origin of the base is out of reach for certain; one that is
-//! nearer may be so still.
+//! The stretched chain of frame origins, from the origin of the base, bounds the reach: |p_e| <= max |p_1| + sum |p_{i+1} - p_i|.
+//! Revolute joints do not change these lengths; a prismatic joint changes them by its stroke.
+//! |p_1| varies if the first joint is revolute and its axis has the distance r_0 from the origin of the base. Let p_1 have the distance r
+//! from the axis, and the coordinate h along it, from the foot of the perpendicular. Then max |p_1|^2 = (r_0 + r)^2 + h^2.
+//! A path beyond this bound is certainly out of reach; a path within it may also be out of reach.
 
 use std::time::Duration;
 
@@ -17,15 +17,15 @@ use super::instance::Functions;
 use super::Instance;
 use crate::model::{number, Body, Experiment, Joint, Sampling};
 
-/// A start off its path, m and rad, that closed-loop inverse kinematics is to bring onto it: beyond, the two hardly belong together.
+/// Maximum plausible distance, m and rad, of a start from its path, which closed-loop inverse kinematics then reduces.
 const OFF: (f64, f64) = (0.05, 0.2);
-/// An angle of a start, rad, beyond which it is in degrees rather than whole turns away.
+/// Start angles above this, rad, are probably in degrees, not whole turns away.
 const DEGREES: f64 = 10.0;
-/// How often the path is looked at, if it is not sampled less often.
+/// Maximum interval between the checked poses of the path.
 const STEP: Duration = Duration::from_millis(10);
 
 impl<R: Functions<N, P>, W, const N: usize, const M: usize, const P: usize> Instance<R, W, N, M, P> {
-    /// What is to be said of an experiment.
+    /// The warnings about an experiment.
     pub(super) fn implausible_settings(&self, experiment: &Experiment) -> Vec<String> {
         let (sampling, start) = match &experiment.body {
             Body::Clik(run) => (&run.sampling, &run.start),
@@ -35,7 +35,7 @@ impl<R: Functions<N, P>, W, const N: usize, const M: usize, const P: usize> Inst
         };
         let q = match self.start(start, sampling) {
             Ok(q) => q,
-            // The run itself says so.
+            // The run itself reports this error.
             Err(_) => return Vec::new(),
         };
         let mut said = self.outside(&q);
@@ -51,7 +51,7 @@ impl<R: Functions<N, P>, W, const N: usize, const M: usize, const P: usize> Inst
             let (name, unit) = (&joint.name, joint.unit());
             let within = |x: f64| x >= low && x <= high;
             if within(start) {
-                // Without limits, or with wide ones, degrees show by their size.
+                // Without limits, or with wide limits, degrees are recognisable by their size.
                 let turns = joint.revolute && start.abs() > std::f64::consts::TAU && low.is_infinite() && high.is_infinite();
                 return turns.then(|| {
                     format!(
@@ -80,7 +80,7 @@ impl<R: Functions<N, P>, W, const N: usize, const M: usize, const P: usize> Inst
         said.collect()
     }
 
-    /// Where the path is farther away than the arm is long.
+    /// A warning if the path leaves the reach of the arm.
     fn beyond_reach(&self, q: &SVector<f64, N>, sampling: &Sampling) -> Option<String> {
         let reach = reach(&self.nominal, &self.robot.joints, q);
         if !reach.is_finite() {
@@ -110,7 +110,7 @@ impl<R: Functions<N, P>, W, const N: usize, const M: usize, const P: usize> Inst
         ))
     }
 
-    /// How far the start is from where the path begins, in the rows of the task.
+    /// The distance of the start from the beginning of the path, in the rows of the task.
     fn off_the_path(&self, q: &SVector<f64, N>, sampling: &Sampling) -> Option<String> {
         let task: &Task<M> = &self.task;
         let error = task.error(&sampling.motion.trajectory.sample(Duration::ZERO).pose, &Pose::of(&self.nominal, q));
@@ -129,7 +129,7 @@ impl<R: Functions<N, P>, W, const N: usize, const M: usize, const P: usize> Inst
     }
 }
 
-/// How far the end effector can be from the origin of the base, m; infinite where a joint slides without end.
+/// Upper bound of the end effector's distance from the origin of the base, m; infinite for an unlimited prismatic joint.
 fn reach<R: Kinematics<N, Real = f64>, const N: usize>(robot: &R, joints: &[Joint], q: &SVector<f64, N>) -> f64 {
     let origin = |frame: &Matrix4<f64>| Vector3::new(frame[(0, 3)], frame[(1, 3)], frame[(2, 3)]);
     let mut chain: Vec<Vector3<f64>> = robot.link_frames(q).iter().map(origin).collect();
@@ -138,7 +138,7 @@ fn reach<R: Kinematics<N, Real = f64>, const N: usize>(robot: &R, joints: &[Join
     let mut reach: f64 = chain.windows(2).map(|pair| (pair[1] - pair[0]).norm()).sum();
     let jacobian = robot.geometric_jacobian(q);
     let [velocity, axis]: [Vector3<f64>; 2] = [0, 3].map(|row| jacobian.fixed_view::<3, 1>(row, 0).into_owned());
-    // The axis of the first joint, z = 0 where it slides: of z x (p_e - a) x z what is at right angles to z is left.
+    // The axis z of the first joint, 0 if it is prismatic. (z × (p_e - a)) × z is the component of p_e - a perpendicular to z.
     let along = |p: Vector3<f64>| axis * axis.dot(&p);
     let foot = if joints[0].revolute { tip - along(tip) - velocity.cross(&axis) } else { Vector3::zeros() };
     let (first, height) = (chain[0] - foot, along(chain[0]));
@@ -150,7 +150,7 @@ fn reach<R: Kinematics<N, Real = f64>, const N: usize>(robot: &R, joints: &[Join
     reach
 }
 
-/// Four digits after the point at most.
+/// Rounds to four decimals.
 fn rounded(x: f64) -> String {
     number((x * 1e4).round() / 1e4)
 }
@@ -160,7 +160,7 @@ mod tests {
     use super::*;
     use armgen_runtime::nalgebra::SMatrix;
 
-    /// A joint that turns a link of 0.5 m about z through (1, 0, 0), or that slides along y from there.
+    /// A joint with a link of 0.5 m that rotates about z through (1, 0, 0), or slides along y from there.
     struct OneJoint(bool);
 
     impl Kinematics<1> for OneJoint {
@@ -188,7 +188,7 @@ mod tests {
         }
     }
 
-    /// At q = 0 the link is stretched away from the base, at pi it is folded back: the arm is as long in both, and in between.
+    /// At q = 0 the link points away from the base, at π towards it; the bound must be the same for both, and in between.
     #[test]
     fn an_arm_beside_the_base_is_as_long_wherever_it_begins() {
         let joint = |revolute, position| Joint { name: String::new(), revolute, position, velocity: 1.0, effort: 1.0 };

@@ -1,4 +1,4 @@
-//! One robot: its data and its functions, with the runs compiled for them.
+//! A robot: its data and its functions, with the runs compiled for them.
 
 use armgen_runtime::nalgebra::SVector;
 use armgen_runtime::robot::Regressor;
@@ -7,7 +7,7 @@ use armgen_runtime::task::{Row, Task};
 use super::{path, Arm, Demonstration, Run, Solver, Unprepared};
 use crate::model::{Body, Experiment, Robot};
 
-/// A robot of `N` joints, `M` rows of the task and `P` parameters: `R` as described, `W` with other parameters.
+/// A robot with `N` joints, `M` task rows and `P` parameters: `R` has the nominal parameters, `W` others.
 #[derive(Clone, Debug)]
 pub struct Instance<R, W, const N: usize, const M: usize, const P: usize> {
     pub(super) robot: Robot,
@@ -17,28 +17,28 @@ pub struct Instance<R, W, const N: usize, const M: usize, const P: usize> {
     pub(super) solver: Option<Solver<N>>,
 }
 
-/// What the runs ask of a robot: what every implementation of an emitted module in f64 has.
+/// The functions that runs need, which every emitted module in f64 implements.
 pub trait Functions<const N: usize, const P: usize>: Regressor<N, P, Real = f64> + Sync {}
 
 impl<R: Regressor<N, P, Real = f64> + Sync, const N: usize, const P: usize> Functions<N, P> for R {}
 
-/// Numbers of a file as an array. The reader has counted them; what would be missing is NaN, which every constructor refuses.
+/// Numbers of a file as an array. The reader has checked their count; a missing number would be NaN, which every constructor refuses.
 pub(super) fn sized<const K: usize>(values: &[f64]) -> [f64; K] {
     std::array::from_fn(|i| values.get(i).copied().unwrap_or(f64::NAN))
 }
 
 impl<R, W, const N: usize, const M: usize, const P: usize> Instance<R, W, N, M, P> {
-    /// The robot `nominal`, of which `robot` is the data and `task` the rows of its task by their indices.
+    /// The robot `nominal` with its data `robot` and the indices `task` of its task rows.
     ///
     /// # Panics
-    /// If `task` is empty, repeats a row or holds an index above 5, which no emitted robot does.
+    /// If `task` is empty, repeats a row or contains an index above 5; no emitted robot has such a task.
     pub fn new(robot: Robot, task: [usize; M], nominal: R, with_parameters: fn([f64; P]) -> W) -> Self {
         let task = Task::from_indices(task).expect("the description has been checked: no row stands twice");
         let robot = Robot { task: task.rows().to_vec(), ..robot };
         Instance { robot, nominal, with_parameters, task, solver: None }
     }
 
-    /// The same with inverse kinematics, where the robot has it.
+    /// The same with inverse kinematics, if the robot has it.
     #[must_use]
     pub fn solved_by(self, solver: Option<Solver<N>>) -> Self {
         Instance { solver, ..self }
@@ -50,7 +50,7 @@ impl<R, W, const N: usize, const M: usize, const P: usize> Instance<R, W, N, M, 
     }
 }
 
-/// The task of rows that have been checked.
+/// The task for checked rows.
 pub(super) fn task_of<const K: usize>(rows: &[Row]) -> Option<Task<K>> {
     Task::new(<[Row; K]>::try_from(rows).ok()?).ok()
 }
@@ -84,7 +84,7 @@ where
     }
 }
 
-/// The robot of an emitted module, given by the path of the module, with its implementation of the traits of the runtime beside it.
+/// The robot of an emitted module, from the path of the module and the implementation of the runtime's traits next to it.
 #[macro_export]
 macro_rules! instance {
     ($($module:ident)::+) => {{
@@ -111,7 +111,7 @@ macro_rules! instance {
             |parameters| emitted::WithParameters { parameters },
         )
         .solved_by({
-            // One of the two has the method.
+            // Exactly one of the two traits has the method for this robot.
             #[allow(unused_imports)]
             use $crate::run::{Solves, SolvesNot};
             (&$crate::run::Probe::of(&emitted::Nominal)).solver()

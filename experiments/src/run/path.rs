@@ -1,4 +1,4 @@
-//! A path as planned: position, angle, speed, acceleration, and how its points are met.
+//! A planned path: position, angle, speed, acceleration, and distances to its points.
 
 use std::time::Duration;
 
@@ -7,19 +7,19 @@ use armgen_runtime::orientation::turn_about;
 
 use crate::model::{Body, Motion, Quantity, Record, Robot, Sampling};
 
-/// An angle that follows the one before it without jumps.
+/// An unwrapped angle.
 struct Unwrapped {
     frame: Matrix3<f64>,
     last: f64,
 }
 
 impl Unwrapped {
-    /// From the frame from which it counts.
+    /// Measures angles relative to this frame.
     fn new(frame: Matrix3<f64>) -> Unwrapped {
         Unwrapped { frame, last: 0.0 }
     }
 
-    /// The turn about z0 of this orientation, next to the last one asked for.
+    /// The rotation about z0 of this orientation, chosen nearest to the previous angle.
     fn of(&mut self, rotation: &Matrix3<f64>) -> f64 {
         let angle = turn_about(&(rotation * self.frame.transpose()), 2);
         let turns = ((self.last - angle) / std::f64::consts::TAU).round();
@@ -59,7 +59,7 @@ pub(super) fn run(sampling: &Sampling, body: &Body, robot: &Robot) -> Record {
     let miss = |i: usize, t: Duration| (trajectory.sample(t).pose.position - segments[i].to()).norm();
     let vias = sampling.motion.vias();
     let stops = || (0..segments.len()).filter(|i| !vias.contains(i)).map(|i| miss(i, segments[i].end())).fold(0.0, f64::max);
-    // The least distance while this segment and the next one are at work; what lies behind the end of the run is not looked at.
+    // The least distance while this segment and the next are active; only within the run.
     let nearest = |i: usize| {
         if segments[i].end() > *duration {
             return f64::NAN;

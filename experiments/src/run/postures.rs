@@ -1,4 +1,4 @@
-//! Manipulability at postures: pose, w, and the ellipsoids of the translation in a plane.
+//! Manipulability in postures: pose, w, and the ellipsoids of the translation in a plane.
 
 use armgen_runtime::manipulability::{
     condition_number, distance_to_singularity, force_ellipsoid, manipulability, velocity_ellipsoid, Ellipsoid,
@@ -11,7 +11,7 @@ use super::instance::Functions;
 use super::Instance;
 use crate::model::{Channel, PostureQuantity, Postures, Quantity, Record, Shape, Shapes};
 
-/// Direction of a column, deg, in (-90, 90]: an axis has no sign.
+/// Direction of a semi-axis, deg, in (-90, 90], because an axis has no sign.
 fn degrees(ellipsoid: &Ellipsoid<f64, 2>, i: usize) -> f64 {
     let d = ellipsoid.directions[(1, i)].atan2(ellipsoid.directions[(0, i)]).to_degrees().rem_euclid(180.0);
     if d > 90.0 {
@@ -63,7 +63,7 @@ impl<R: Functions<N, P>, W, const N: usize, const M: usize, const P: usize> Inst
         record
     }
 
-    /// The arm at all combinations of the values of the first two joints, the others at zero.
+    /// The arm in all combinations of values of the first two joints, with the others at zero.
     fn grid(&self, postures: &Postures) -> Vec<Shape> {
         let Some([first, second]) = &postures.grid else { return Vec::new() };
         let all = first.iter().flat_map(|a| second.iter().map(move |b| [*a, *b]));

@@ -1,7 +1,7 @@
-//! The inverse kinematics of a robot, where it has one.
+//! The inverse kinematics of a robot, if it has any.
 //!
-//! Which robot has it is known where an instance is made: [`Probe`] gives its functions, or none. A method of a trait that is implemented for a
-//! reference is found after one of a trait that is implemented for the type itself, so [`Solves`] comes first where the robot implements it.
+//! The code that makes an instance decides by autoref: [`Probe`] returns the robot's functions, or `None`. Method lookup tries the type
+//! itself before a reference to it, so [`Solves`] takes precedence if the robot implements inverse kinematics.
 
 use std::marker::PhantomData;
 
@@ -10,24 +10,24 @@ use armgen_runtime::nalgebra::SVector;
 use armgen_runtime::reference::Pose;
 use armgen_runtime::robot::InverseKinematics;
 
-/// Poses of a path that are looked at, at least.
+/// Minimum number of steps along a path.
 const STEPS: u32 = 500;
 
-/// What is asked of a robot with inverse kinematics.
+/// The inverse-kinematics functions that runs need.
 #[derive(Clone, Copy, Debug)]
 pub struct Solver<const N: usize> {
-    /// How many postures reach a pose.
+    /// The number of postures for a pose.
     pub(super) count: fn(&Pose<f64>) -> usize,
     /// Follows a posture along a path, as `armgen_runtime::inverse_kinematics::follow` does.
     pub(super) follow: fn(&dyn Fn(f64) -> Pose<f64>, &SVector<f64, N>, &mut dyn FnMut(f64, &SVector<f64, N>)) -> Followed<f64, N>,
 }
 
-/// A robot that is asked for its inverse kinematics.
+/// A robot whose inverse kinematics is looked up.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Probe<R>(PhantomData<R>);
 
 impl<R> Probe<R> {
-    /// Of this robot.
+    /// A probe for this robot.
     pub fn of(_: &R) -> Probe<R> {
         Probe(PhantomData)
     }
@@ -35,7 +35,7 @@ impl<R> Probe<R> {
 
 /// A robot with inverse kinematics.
 pub trait Solves<const N: usize, const K: usize> {
-    /// Its functions.
+    /// The robot's functions.
     fn solver(&self) -> Option<Solver<N>>;
 }
 
@@ -51,9 +51,9 @@ where
     }
 }
 
-/// A robot without.
+/// A robot without inverse kinematics.
 pub trait SolvesNot<const N: usize> {
-    /// None.
+    /// `None`, because the robot has no inverse kinematics.
     fn solver(&self) -> Option<Solver<N>> {
         None
     }

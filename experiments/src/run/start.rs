@@ -1,4 +1,4 @@
-//! Where a run begins: at joint variables of the file, or at a posture that closed-loop inverse kinematics finds where the path begins.
+//! The start of a run: joint variables of the file, or a posture from closed-loop inverse kinematics at the beginning of the path.
 
 use std::f64::consts::PI;
 use std::time::Duration;
@@ -13,21 +13,21 @@ use super::instance::Functions;
 use super::Instance;
 use crate::model::{Sampling, Start};
 
-/// Errors of the rows of the task, m and rad, within which a posture is where the path begins.
+/// Maximum task error, m and rad, of a posture at the beginning of the path.
 const TOLERANCE: f64 = 1e-9;
-/// Postures that are tried, and steps from each.
+/// Number of initial postures, and of steps from each.
 const TRIES: u32 = 32;
 const STEPS: u32 = 400;
-/// Part of the error that is closed at a step.
+/// Fraction of the error that a step removes.
 const PART: f64 = 0.3;
-/// Damping near singular postures: manipulability below which it begins, and its size.
+/// Damping near singular postures: the manipulability below which it begins, and its maximum.
 const DAMPING: (f64, f64) = (1e-3, 1e-2);
 
 impl<R: Functions<N, P>, W, const N: usize, const M: usize, const P: usize> Instance<R, W, N, M, P> {
     /// The joint variables at the start.
     ///
     /// # Errors
-    /// Where no posture is found, in words.
+    /// No posture is found; the message gives the reason.
     pub(super) fn start(&self, start: &Start, sampling: &Sampling) -> Result<SVector<f64, N>, String> {
         match start {
             Start::Joints(values) => Ok(Self::joints(values)),
@@ -35,7 +35,8 @@ impl<R: Functions<N, P>, W, const N: usize, const M: usize, const P: usize> Inst
         }
     }
 
-    /// A posture where the path begins: the first that is found from `near`, or from points that fill the limits evenly, the middle first.
+    /// A posture at the beginning of the path: the first found from `near`, or else from points spread evenly over the limits, the
+    /// middle first.
     fn on_the_path(&self, near: Option<&[f64]>, sampling: &Sampling) -> Result<SVector<f64, N>, String> {
         let refused = |error: &dyn std::fmt::Display| format!("there is no start on the path: {error}");
         let damping = Damping::below(DAMPING.0).at_most(DAMPING.1).map_err(|error| refused(&error))?;
@@ -64,8 +65,8 @@ impl<R: Functions<N, P>, W, const N: usize, const M: usize, const P: usize> Inst
         ))
     }
 
-    /// Point `k` of a sequence that fills the limits evenly (multiples of irrational numbers, modulo 1), the middle for `k` = 0; half a turn or
-    /// half a metre to either side where there are none.
+    /// Point `k` of a sequence that fills the limits evenly (multiples of irrational numbers, modulo 1); `k` = 0 is the middle. A missing
+    /// limit is half a turn or half a metre from zero.
     fn spread(&self, k: u32) -> SVector<f64, N> {
         SVector::from_fn(|i, _| {
             let joint = &self.robot.joints[i];
@@ -73,7 +74,7 @@ impl<R: Functions<N, P>, W, const N: usize, const M: usize, const P: usize> Inst
             let [low, high] = joint.position;
             let [low, high] = [if low.is_finite() { low } else { -wide }, if high.is_finite() { high } else { wide }];
             let part = (0.5 + f64::from(k) * ((i + 2) as f64).sqrt()).fract();
-            // The square roots of square numbers are whole: their joints take another sequence.
+            // Square numbers have integer roots, so their joints use multiples of π.
             let part =
                 if ((i + 2) as f64).sqrt().fract() == 0.0 { (0.5 + f64::from(k) * PI * (i + 1) as f64).fract() } else { part };
             low + (high - low) * part

@@ -1,4 +1,4 @@
-//! What a page costs: sizes, and the times of a browser.
+//! Costs of a page: sizes, and times in a browser.
 
 use super::driver::Tab;
 use super::pages::{long, robot, written};
@@ -30,7 +30,7 @@ fn table_of_budgets() {
     }
 }
 
-/// The median time of the script for a movement of a slider.
+/// The median script time per slider movement.
 const SLIDE: &str = r#"(() => {
     const times = [];
     for (let k = 0; k < 41; k++) {
@@ -43,8 +43,8 @@ const SLIDE: &str = r#"(() => {
     return times.sort((a, b) => a - b)[20];
 })()"#;
 
-/// The section of equations that takes longest to open, until its first lines are laid out; and the longest that the page stands still while any
-/// is set, between two frames.
+/// The longest time from opening a section of equations to the layout of its first lines;
+/// and the longest gap between two frames while the page sets a section.
 const SLOWEST: &str = r#"(async () => {
     let [slowest, name, still, which] = [0, "", 0, ""];
     const frame = () => new Promise((done) => requestAnimationFrame(done));

@@ -1,11 +1,11 @@
-//! The check against the real arm, and the other postures at a pose.
+//! The check against the real arm, and the other postures for a pose.
 
 use armgen_codegen::source::Source;
 
 use super::pages::{opened, robot};
 use super::MOVE;
 
-/// Poses of the true arm on the page of a description with one wrong value: the first suspect is the row, and a ghost can be drawn of it.
+/// For poses of the true arm and a description with a wrong value, the row of that value is the first suspect, with a ghost to draw.
 #[test]
 #[ignore = "wide"]
 fn a_planted_mistake_is_the_first_suspect() {
@@ -16,7 +16,7 @@ fn a_planted_mistake_is_the_first_suspect() {
          document.getElementById('measured').value"
     ));
     assert_eq!(tab.run("document.querySelectorAll('#suspects li').length"), 0, "the true arm agrees");
-    // A wrong length is no mistake of those that are looked for: the vector is said, and nothing is named. Other units are asked about, and a
+    // The check does not search for a wrong length, so it shows the vector and names no suspect. It asks about other units, and a
     // button takes the same numbers in them.
     let others = tab.run(
         "(() => { const field = document.getElementById('measured'), said = () => document.getElementById('measured-said'), seen = []; \
@@ -57,7 +57,7 @@ fn a_planted_mistake_is_the_first_suspect() {
     let marks = serde_json::json!(["measured, pose 1", "mistake mended"]);
     assert_eq!(first, serde_json::json!(["5", "alpha-sign", true, true, first[4], true, marks]));
     assert_eq!(tab.run("document.getElementById('measured-said').lastChild.textContent"), "This one explains them:");
-    // Of one position without orientation several mistakes come equally near, and it is said what would tell them apart.
+    // For a single position without orientation, several mistakes fit equally well; the page explains how to distinguish them.
     let alone = tab.run(
         "(() => { const field = document.getElementById('measured'); \
          field.value = field.value.split('\\n')[0].split(' ').slice(0, 9).join(' '); field.dispatchEvent(new Event('input')); \
@@ -66,7 +66,7 @@ fn a_planted_mistake_is_the_first_suspect() {
                  document.querySelectorAll('#arm .marks text').length]; })()",
     );
     assert_eq!(alone, serde_json::json!([true, true, 0]));
-    // With the wrist stretched the arm is singular whatever the other joints do, and the map says so instead of drawing noise.
+    // With the wrist stretched the arm is singular in every posture of the other joints; the map reports it instead of drawing noise.
     let drawn = tab.run(
         "(async () => { document.getElementById('zero').click(); const map = document.getElementById('w-map'), said = () => document.getElementById('w-said').textContent; \
          map.open = true; await new Promise((done) => setTimeout(done, 100)); const named = said().startsWith('The slice of all postures at q₁ = 0 rad, q₂ = 0 rad, q₄ = 0 rad, q₆ = 0 rad. Across: q₃') && !map.querySelector('.map').hidden; \
@@ -83,12 +83,11 @@ fn a_planted_mistake_is_the_first_suspect() {
     tab.close();
 }
 
-/// The other postures of a pose are listed, drawn as ghosts, and taken by their buttons; the joint of a redundant arm is held.
+/// The page lists the other postures for a pose and draws them as ghosts; buttons apply them. A redundant arm keeps one joint fixed.
 #[test]
 #[ignore = "wide"]
 fn other_postures_at_a_pose_are_ghosts() {
-    // The number of postures, how many ghosts beside the arm, how far the end effector moves when the second posture is taken, and the joint
-    // that is held then.
+    // The number of postures; the number of ghosts; the end effector's motion when the second posture is applied; and the fixed joint.
     for (name, postures) in [("scara", 2), ("puma560", 8), ("panda7", 4)] {
         let Some(mut tab) = opened(&robot(name), 1600, "light") else { return };
         let found = tab.run(&format!(

@@ -1,5 +1,5 @@
-//! Chromium without a window, driven through its DevTools protocol: JSON texts, each closed by a zero byte, over two pipes that the browser
-//! has as file descriptors 3 and 4. Named pipes and a shell give it these; no crate and no port is needed.
+//! Headless Chromium, driven through the DevTools protocol: zero-terminated JSON texts over two pipes.
+//! The browser reads and writes them as file descriptors 3 and 4. Named pipes and a shell set these up without a crate or a port.
 
 use std::fs::{File, OpenOptions};
 use std::io::{BufRead, BufReader, Write};
@@ -14,7 +14,7 @@ use serde_json::{json, Value};
 
 use crate::installed::{left_out, runs};
 
-/// The browser of this machine: `CHROMIUM`, or one of the usual names; none is said in a line.
+/// The installed browser: `CHROMIUM`, or a usual name; prints a line if there is no browser.
 pub(crate) fn program() -> Option<&'static str> {
     static FOUND: OnceLock<Option<String>> = OnceLock::new();
     let found = FOUND.get_or_init(|| {
@@ -28,23 +28,23 @@ pub(crate) fn program() -> Option<&'static str> {
     found.as_deref()
 }
 
-/// Browsers that no test uses at the moment: one starts only where all others have a page open. They end with the tests, when their pipes close.
+/// Idle browsers: a new browser starts only if all others have a page open. They end with the tests, when their pipes close.
 static IDLE: Mutex<Vec<Browser>> = Mutex::new(Vec::new());
 
-/// What a page is waited for: whatever it does takes a few seconds where the processor is shared, and a script may wait for what never comes.
+/// Time limit for a page: any action takes a few seconds on a shared processor, but a script may wait for ever.
 const LIMIT: Duration = Duration::from_secs(120);
 
 /// A running browser.
 struct Browser {
     child: Child,
     to: File,
-    /// Its texts; they end when it does.
+    /// The browser's messages; the channel closes when the browser ends.
     from: Receiver<Vec<u8>>,
     sent: u64,
     events: Vec<Value>,
 }
 
-/// An open page, in a browser of its own as long as it is open.
+/// An open page, with exclusive use of a browser.
 pub(crate) struct Tab {
     browser: Browser,
     session: String,
@@ -94,7 +94,7 @@ impl Browser {
         Browser { child, to, from, sent: 0, events: Vec::new() }
     }
 
-    /// Calls a method and gives its result; what happens until then is kept.
+    /// Calls a method and returns its result; keeps the events that arrive before it.
     #[track_caller]
     fn call(&mut self, session: Option<&str>, method: &str, parameters: Value) -> Value {
         self.sent += 1;
@@ -124,7 +124,7 @@ impl Drop for Browser {
 }
 
 impl Tab {
-    /// Opens a file in a window of a width, in a theme, and waits until the page is drawn; none where there is no browser.
+    /// Opens a file with a window width and a theme, and waits for the drawing; `None` without a browser.
     #[track_caller]
     pub(crate) fn open(file: &Path, width: u32, theme: &str) -> Option<Tab> {
         let program = program()?;
@@ -159,7 +159,7 @@ impl Tab {
         self.browser.call(Some(&session), method, parameters)
     }
 
-    /// What an expression gives, waited for.
+    /// The value of an expression, after its promise resolves.
     #[track_caller]
     pub(crate) fn run(&mut self, expression: &str) -> Value {
         let parameters = json!({"expression": expression, "awaitPromise": true, "returnByValue": true});
@@ -168,27 +168,27 @@ impl Tab {
         result["result"]["value"].take()
     }
 
-    /// What was said on the console, exceptions and reports of the browser included.
+    /// All console messages, exceptions and browser reports.
     pub(crate) fn messages(&self) -> Vec<String> {
         let spoken = ["Runtime.consoleAPICalled", "Runtime.exceptionThrown", "Log.entryAdded"];
         let events = self.browser.events.iter().filter(|event| spoken.iter().any(|method| event["method"] == *method));
         events.map(|event| event["params"].to_string()).collect()
     }
 
-    /// What was asked for, data of the page itself left out.
+    /// All requests, except data URLs of the page.
     pub(crate) fn requests(&self) -> Vec<String> {
         let events = self.browser.events.iter().filter(|event| event["method"] == "Network.requestWillBeSent");
         let addresses = events.filter_map(|event| event["params"]["request"]["url"].as_str());
         addresses.filter(|address| !address.starts_with("data:")).map(str::to_owned).collect()
     }
 
-    /// Gives the window another size, a pixel of it `scale` of the picture's.
+    /// Resizes the window; `scale` is the ratio of screenshot pixels to window pixels.
     pub(crate) fn resize(&mut self, width: u32, height: u32, scale: f64) {
         let size = json!({"width": width, "height": height, "deviceScaleFactor": scale, "mobile": false});
         self.call("Emulation.setDeviceMetricsOverride", size);
     }
 
-    /// Presses the key of tabulators.
+    /// Presses the Tab key.
     pub(crate) fn press_tab(&mut self) {
         for kind in ["keyDown", "keyUp"] {
             self.call("Input.dispatchKeyEvent", json!({"type": kind, "key": "Tab", "code": "Tab", "windowsVirtualKeyCode": 9}));
@@ -200,7 +200,7 @@ impl Tab {
         self.click_for(selector, 0);
     }
 
-    /// Clicks into the middle of an element, the button down for so many milliseconds at least.
+    /// Clicks into the middle of an element, and holds the button for at least this time.
     pub(crate) fn click_for(&mut self, selector: &str, milliseconds: u64) {
         let at = self.run(&format!(
             "(() => {{ const e = document.querySelector('{selector}'); e.scrollIntoView({{ block: 'center' }}); const box = e.getBoundingClientRect(); \
@@ -213,7 +213,7 @@ impl Tab {
         }
     }
 
-    /// Types a text, a key after the other, where the focus is.
+    /// Types a text into the focused element, key by key.
     pub(crate) fn type_text(&mut self, text: &str) {
         for key in text.chars().map(String::from) {
             self.call("Input.dispatchKeyEvent", json!({"type": "keyDown", "key": key, "text": key}));
@@ -229,20 +229,20 @@ impl Tab {
         self.call("Input.dispatchKeyEvent", json!({"type": "keyUp", "key": key, "code": key, "windowsVirtualKeyCode": code}));
     }
 
-    /// The page as it is printed.
+    /// Prints the page to PDF; returns the size of its base64 text.
     pub(crate) fn print(&mut self) -> usize {
         self.call("Page.printToPDF", json!({}))["data"].as_str().map_or(0, str::len)
     }
 
-    /// A picture of the window, in Base64.
+    /// A screenshot of the window, in base64.
     pub(crate) fn picture(&mut self) -> String {
         self.call("Page.captureScreenshot", json!({"format": "png"}))["data"].as_str().unwrap_or_default().to_owned()
     }
 
-    /// Closes the page; nothing may have been said and nothing asked for but the file.
+    /// Closes the page; fails on any message, and on any request besides the file.
     #[track_caller]
     pub(crate) fn close(mut self) {
-        // What is said late is said until then.
+        // Collect late messages, too.
         self.run("new Promise((done) => setTimeout(done, 20)).then(() => 0)");
         assert_eq!(self.messages(), Vec::<String>::new(), "{}", self.address);
         assert_eq!(self.requests(), [self.address.as_str()]);

@@ -1,8 +1,8 @@
-//! Equations: set when their section is opened, with numbers beside them, and all of them on paper.
+//! Equations: the page sets them when their section opens, with their numbers, and all of them when printing.
 
 use super::pages::{opened, robot};
 
-/// Every section of equations opens, with numbers and with names, and never holds more nodes than a browser lays out at once.
+/// Every section of equations opens, with numbers and with names, and never has more nodes than the limit for a layout.
 #[test]
 #[ignore = "wide"]
 fn equations_are_set_when_they_are_opened() {
@@ -25,14 +25,14 @@ fn equations_are_set_when_they_are_opened() {
             assert_eq!(tab.run(near), "⚠ zero: singular", "the arm is stretched at q = 0");
         }
         if name == "everything" {
-            // One entry is shown before the steps that it needs, and they are fewer than all; no step that is named is missing.
+            // An entry appears before its steps, which are fewer than all steps; no named step is missing.
             let chosen = tab.run(CHOOSE_ENTRY);
             assert_eq!(chosen, serde_json::json!(["1,2", true, [], true, true]));
             assert_eq!(tab.run(KEEP_ENTRY), serde_json::json!(["b12", "1,2", true, true]));
-            // An operator stands in the middle of its operands, wherever a line may break.
+            // Operators are centred between their operands, also where a line may break.
             assert_eq!(tab.run(OPERATORS), serde_json::json!([true, true]));
         }
-        // Names are offered where there are some.
+        // The page offers names where parameters have them.
         let offered = tab.run("(() => { const names = document.querySelector('input[value=symbolic]'); return [names.disabled, names.parentElement.title !== '']; })()");
         assert_eq!(
             offered,
@@ -43,7 +43,7 @@ fn equations_are_set_when_they_are_opened() {
     }
 }
 
-/// Printed, an open section has all of its lines, those that wait for a button as well; afterwards they are as they were.
+/// In print, an open section shows all lines, including those behind a button; afterwards its earlier state returns.
 #[test]
 #[ignore = "wide"]
 fn all_lines_of_an_open_section_are_printed() {
@@ -64,8 +64,8 @@ fn all_lines_of_an_open_section_are_printed() {
     tab.close();
 }
 
-/// An entry of an open section has its number beside it, that of the table at every posture; a singular posture is told at the picture, and
-/// the buttons beside the factors lead to it.
+/// In every posture, an entry in an open section shows the same number as the table. The picture reports a singular posture,
+/// and the buttons next to the factors move the arm there.
 #[test]
 #[ignore = "wide"]
 fn entries_have_numbers_and_singular_postures_a_badge() {
@@ -115,7 +115,7 @@ const OPEN: &str = r#"(async () => {
     return all;
 })()"#;
 
-/// Chooses one of the forms of equations, waits, and evaluates.
+/// Chooses a form of the equations, waits, and evaluates an expression.
 fn choose(name: &str, value: &str, then: &str) -> String {
     format!(
         "(async () => {{ document.querySelector('input[name=\"{name}\"][value=\"{value}\"]').click(); \
@@ -123,7 +123,7 @@ fn choose(name: &str, value: &str, then: &str) -> String {
     )
 }
 
-/// Another form of what is shown keeps the entry that was chosen.
+/// A chosen entry survives a change of the form.
 const KEEP_ENTRY: &str = r#"(async () => {
     const details = document.querySelector("details[data-equation=inertia_matrix]");
     const ready = async () => {
@@ -145,7 +145,7 @@ const KEEP_ENTRY: &str = r#"(async () => {
     return seen;
 })()"#;
 
-/// The spaces before and behind the operators that begin a part of a line, in parts of the font: about the same, and neither is nothing.
+/// The spaces around operators at the start of a line's part, in em: nearly equal, and both positive.
 const OPERATORS: &str = r#"(() => {
     const signs = [...document.querySelectorAll(".lines > div > math + math > mrow > mo:first-child")].filter((sign) => sign.getClientRects().length > 0);
     const box = (element) => element.getBoundingClientRect();
@@ -162,7 +162,7 @@ const OPERATORS: &str = r#"(() => {
     return [gaps.length > 5, gaps.every(([before, after]) => before > 0.15 && after > 0.15 && Math.abs(before - after) < 0.1)];
 })()"#;
 
-/// Chooses an entry of the inertia matrix, and all of them again.
+/// Chooses an entry of the inertia matrix, and then all entries again.
 const CHOOSE_ENTRY: &str = r#"(async () => {
     const details = document.querySelector("details[data-equation=inertia_matrix]");
     details.open = true;

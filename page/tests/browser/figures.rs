@@ -46,7 +46,7 @@ fn figures_of_the_documentation() {
     }
 }
 
-/// The bytes of a text in base64.
+/// Decodes base64.
 fn decoded(text: &str) -> Vec<u8> {
     let digit = |c: u8| match c {
         b'A'..=b'Z' => c - b'A',

@@ -1,11 +1,11 @@
-//! Logs: played on the arm, and laid over each other.
+//! Logs: playback on the arm, and comparison of two runs.
 
 use armgen_page::{Log, Run};
 
 use super::driver::{self, Tab};
 use super::pages::{robot, written_with};
 
-/// A log is played: the arm follows the time line, the tip leaves its trail, plots and figures are there.
+/// During playback the arm follows the time line, the tip leaves its trail, and plots and figures appear.
 #[test]
 #[ignore = "wide"]
 fn a_log_is_played_on_the_arm() {
@@ -40,12 +40,12 @@ fn a_log_is_played_on_the_arm() {
          return [seen, document.getElementById('q2-value').value, document.querySelectorAll('#arm .trail path').length, \
                  [...log.querySelectorAll('.u-title')].map((title) => title.textContent), time.max]; })()",
     );
-    // Joints that turn and those that slide have axes of their own.
+    // Revolute and prismatic joints have separate axes.
     let titles = ["joint variables, rad", "joint variables, m", "errors of the end effector, desired − actual, m"];
     let rates = "Rates are not in the log of small: q̇ and q̈ are those of the fields here, 0 unless others were typed, and C, τ and T are not the run's.";
     let seen = serde_json::json!([true, false, "5.1", false, "5", false, "4.9", false, rates]);
     assert_eq!(played, serde_json::json!([seen, "-0.5", 2, titles, "10"]));
-    // The other run lies over it: two curves more in the plot of the joints, and its trail; taken away again, they are gone.
+    // The other run adds two curves to the plot of the joints, and its trail; its removal removes them.
     let laid = tab.run(
         "(async () => { const log = document.querySelector('[data-log=\"small\"]'), select = log.querySelector('.lay-over select'); \
          const seen = () => [log.querySelectorAll('.uplot .u-series').length, document.querySelectorAll('#arm .trail path').length]; \
@@ -54,7 +54,7 @@ fn a_log_is_played_on_the_arm() {
          return [seen(), await lay('large'), await lay('')]; })()",
     );
     assert_eq!(laid, serde_json::json!([[10, 2], [17, 4], [10, 2]]));
-    // Meanwhile neither the page nor the time moves, and the arm of the other run stands beside as a ghost while it is laid over.
+    // Meanwhile neither the page nor the time moves, and the other run's arm appears as a ghost.
     let stays = tab.run(
         "(async () => { const log = document.querySelector('[data-log=\"small\"]'), select = log.querySelector('.lay-over select'); \
          select.scrollIntoView({ block: 'center' }); const top = () => select.getBoundingClientRect().top, before = top(); \
@@ -64,7 +64,7 @@ fn a_log_is_played_on_the_arm() {
              seen.push(document.getElementById('time').value, document.getElementById('q2-value').value, ghosts(), Math.abs(top() - before) < 2); } \
          return seen; })()",
     );
-    // Its arm, its trail and that of this run differ in what they are drawn with, and are seen against the picture.
+    // Arm and trail of the other run have other colours than those of this run, with enough contrast to the picture.
     let contrast = tab.run(
         "(async () => { const select = document.querySelector('.lay-over select'), seen = []; select.value = 'large'; \
          select.dispatchEvent(new Event('change')); await new Promise((done) => setTimeout(done, 600)); \
@@ -80,13 +80,13 @@ fn a_log_is_played_on_the_arm() {
     );
     assert_eq!(contrast, serde_json::json!([true, true, true, true]));
     assert_eq!(stays, serde_json::json!(["5", "-0.5", true, true, "5", "-0.5", false, true]));
-    // An arm in the same posture would only change the colours of this one.
+    // A ghost in the same posture would only change the colours of this arm.
     let hidden = "(async () => { const select = document.querySelector('.lay-over select'), seen = []; \
                   for (const name of ['same', 'large', '']) { select.value = name; select.dispatchEvent(new Event('change')); \
                       await new Promise((done) => setTimeout(done, 600)); seen.push(document.querySelectorAll('#arm .ghosts .solid').length > 5); } return seen; })()";
     assert_eq!(tab.run(hidden), serde_json::json!([false, true, false]));
-    // Between two samples all of the page is at the one before; a theme that is chosen later is that of legend and cursor, too; the time line
-    // says whose time it is, and what it is moved to lies below it.
+    // Between two samples the whole page shows the earlier sample. Legend and cursor follow a later change of the theme.
+    // The time line names its run, and a link's target appears below it.
     let one = tab.run(
         "(async () => { const log = document.querySelector('[data-log=\"small\"]'), time = document.getElementById('time'); \
          time.value = '4.2938'; time.dispatchEvent(new Event('input')); await new Promise((done) => setTimeout(done, 100)); \
@@ -100,7 +100,7 @@ fn a_log_is_played_on_the_arm() {
                  document.getElementById('time-of').textContent, document.getElementById('q2-value').value]; })()",
     );
     assert_eq!(one, serde_json::json!([["4.2 s"], true, 2, 0, true, "small, time", "-0.42"]));
-    // A click into a plot goes to its time and stays there, also while the run is played.
+    // A click into a plot jumps to its time and stays there, also during playback.
     let state = "[document.getElementById('log-play').textContent, document.getElementById('time-value').value, document.getElementById('q2-value').value]";
     let playing = tab.run(
         "(async () => { const time = document.getElementById('time'), play = document.getElementById('log-play'); time.value = '0'; time.dispatchEvent(new Event('input')); \
@@ -109,7 +109,7 @@ fn a_log_is_played_on_the_arm() {
     assert_eq!(playing, serde_json::json!(["pause", true]));
     tab.click_for("[data-log=small] .u-over", 200);
     assert_eq!(tab.run(state), serde_json::json!(["play", "5", "-0.5"]));
-    // A time that is typed is gone to, within the run, and what is none is forgotten.
+    // A typed time is clamped to the run; any other text is discarded.
     let typed = tab.run(
         "(() => { const value = document.getElementById('time-value'), q2 = document.getElementById('q2-value'); \
          return ['3', '99', 'x'].map((text) => { value.value = text; value.dispatchEvent(new Event('change')); return [value.value, q2.value]; }); })()",

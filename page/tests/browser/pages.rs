@@ -1,4 +1,4 @@
-//! Descriptions, and their pages: each is written once, however many tests open it.
+//! Descriptions and their pages: each page is written once for all tests.
 
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
@@ -24,12 +24,12 @@ pub(crate) fn robots() -> Vec<Source> {
     paths.into_iter().map(source).collect()
 }
 
-/// One of them.
+/// A robot description by name.
 pub(crate) fn robot(name: &str) -> Source {
     robots().into_iter().find(|source| source.name() == format!("{name}.yaml")).expect("a robot of the project")
 }
 
-/// An arm of so many joints, the first of them prismatic.
+/// An arm with this number of joints, the first prismatic.
 pub(crate) fn long(joints: usize) -> Source {
     let mut text = String::from("name: long\nconvention: modified\ngravity: [0, 0, -9.81]\njoints:\n");
     for i in 0..joints {
@@ -46,7 +46,7 @@ pub(crate) fn long(joints: usize) -> Source {
     Source::new(format!("long{joints}.yaml"), text)
 }
 
-/// The file of the page of an arm.
+/// The page file of an arm.
 pub(crate) fn written(source: &Source) -> PathBuf {
     type Pages = BTreeMap<[String; 2], (usize, Arc<OnceLock<PathBuf>>)>;
     static PAGES: Mutex<Pages> = Mutex::new(BTreeMap::new());
@@ -55,7 +55,7 @@ pub(crate) fn written(source: &Source) -> PathBuf {
     let (number, page) =
         pages.entry([source.name().to_owned(), source.text().to_owned()]).or_insert_with(|| (next, Arc::default()));
     let (number, page) = (*number, Arc::clone(page));
-    // Other pages are written meanwhile.
+    // Let other threads write their pages meanwhile.
     drop(pages);
     page.get_or_init(|| written_with(&format!("page-{number}"), source, &[])).clone()
 }
@@ -68,7 +68,7 @@ pub(crate) fn written_with(folder: &str, source: &Source, runs: &[Run]) -> PathB
     file
 }
 
-/// Opens the page of an arm in a window of a width, in a theme; none where there is no browser.
+/// Opens the page of an arm with a window width and a theme; `None` without a browser.
 #[track_caller]
 pub(crate) fn opened(source: &Source, width: u32, theme: &str) -> Option<Tab> {
     driver::program()?;

@@ -1,10 +1,10 @@
-//! What a reader types, and what is said to them: fields, formulas, singular postures, what is left open.
+//! Input by a reader and the messages of the page: fields, formulas, singular postures, missing data.
 
 use super::pages::{opened, robot};
 use super::MOVE;
 
-/// A click takes all of a field, what is typed counts when it is finished, Escape brings the number back, and a list that is pasted into one
-/// field is a posture, in the units of the fields.
+/// A click selects the whole field; input counts when it is complete; Escape restores the number. A list pasted into one field sets
+/// several joints, in the units of the fields.
 #[test]
 #[ignore = "wide"]
 fn typing_counts_when_it_is_finished() {
@@ -39,7 +39,7 @@ fn typing_counts_when_it_is_finished() {
          paste('[0.1, -pi/4, 0.3, -0]'); paste('array([0.5, 0.2])'); paste('2*(pi - 1)/3'); paste('1,5'); paste('1,2,3,4,5'); paste('1;2\\n3\\t4'); \
          paste('- 7\\n- 8'); document.getElementById('angle-unit').click(); paste('90 pi/4 0.5 0'); return seen; })()",
     );
-    // A list of all joints is a posture, another one goes on from the joint whose field it is pasted into.
+    // A list of all joints sets the posture; a shorter list starts at the joint of its field.
     let from_there_on = ["0.1", "0.5", "0.2", "0"];
     let too_many = "5 numbers: a posture has 4, and from q₂ on there are 3 joints";
     let expected = serde_json::json!([
@@ -53,7 +53,7 @@ fn typing_counts_when_it_is_finished() {
         [true, ["90", "45", "0.5", "0"], ""]
     ]);
     assert_eq!(pasted, expected);
-    // Degrees stand as they were typed, in rates as well; commas for points are named, and a list counts typed as pasted.
+    // Degrees stay as typed, in rates as well. The page names decimal commas, and a typed list counts like a pasted list.
     let typed = tab.run(
         "(() => { const seen = []; const type = (id, text) => { const field = document.getElementById(id), fault = document.getElementById(`${id.match(/q\\d/)[0]}-fault`); \
              field.value = text; for (const kind of ['input', 'change']) field.dispatchEvent(new Event(kind, { bubbles: true })); \
@@ -77,8 +77,9 @@ fn typing_counts_when_it_is_finished() {
     tab.close();
 }
 
-/// What was taken for joints without limits is said; an arm that has become small fills its picture again; names have a key, and the choice of
-/// names stays where it is; more lines can be folded back; functions have whole words as names; what is folded in is said on paper.
+/// The page states the ranges it assumed for joints without limits, rescales a picture that has become small, and explains symbols.
+/// The choice of names keeps its place on the screen, long equations fold again, the cost table shows whole names, and the print lists
+/// the folded sections.
 #[test]
 #[ignore = "wide"]
 fn what_is_left_open_is_said() {
@@ -113,7 +114,7 @@ fn what_is_left_open_is_said() {
          button('show fewer').click(); return [more > first, (await ready()) === first]; })()",
     );
     assert_eq!(folded, serde_json::json!([true, true]));
-    // All that is folded in is opened by one button, as long as the equations can be printed, and folded again.
+    // A button opens all folded sections, up to the size that can be printed, and folds them again.
     let all = tab.run(
         "(async () => { const button = document.getElementById('unfold'), seen = []; \
          for (let k = 0; k < 2; k++) { button.click(); while (button.getAttribute('aria-busy') === 'true') await new Promise((done) => setTimeout(done, 30)); \
@@ -125,7 +126,7 @@ fn what_is_left_open_is_said() {
     tab.close();
 }
 
-/// That a text was copied is said beside the button that was pressed, and LaTeX has the digits that are chosen.
+/// The page reports a copy next to its button, and LaTeX has the chosen digits.
 #[test]
 #[ignore = "wide"]
 fn a_copy_is_said_where_it_was_asked_for() {
@@ -148,8 +149,8 @@ fn a_copy_is_said_where_it_was_asked_for() {
     tab.close();
 }
 
-/// Nothing stands behind a sine that could be taken for a part of its angle, a small constant has a power of ten, and rates, torques and
-/// derivatives have their symbols; what rounding leaves is shown as 0, and the number stays what was computed.
+/// No factor follows a sine as if it belonged to its angle, and a small constant has a power of ten. Rates, torques and derivatives
+/// have their symbols. Rounding errors appear as 0, but the stored number stays as computed.
 #[test]
 #[ignore = "wide"]
 fn formulas_and_numbers_cannot_be_misread() {
@@ -196,8 +197,8 @@ fn formulas_and_numbers_cannot_be_misread() {
     tab.close();
 }
 
-/// A singular posture says what the axes do that makes it one, in the plural where several factors are zero; the line of the lost motion and
-/// its words are in the picture in every view, and cover no name of a frame and not the badge.
+/// For a singular posture the page describes the motion of the axes, in the plural if several factors are zero. The line of the lost
+/// motion and its label appear in every view, and cover neither a frame's name nor the badge.
 #[test]
 #[ignore = "wide"]
 fn a_singular_posture_says_why() {
@@ -236,8 +237,8 @@ fn a_singular_posture_says_why() {
     }
 }
 
-/// The fields of joints take expressions, show six digits of all those that they hold, and say what is no number instead of forgetting it, even
-/// when another joint moves.
+/// Fields of joints accept expressions and show six of all the digits they keep. A text that is not a number gets a message and
+/// stays, even when another joint moves.
 #[test]
 #[ignore = "wide"]
 fn fields_take_expressions() {
@@ -269,7 +270,7 @@ fn fields_take_expressions() {
         ["1.5x", "−67.7549", "-1.183", false, true],
         ["1.5x", false],
         ["17.188733853924695", true],
-        // What was added to a number that stood there is said to be a sum.
+        // A term typed after the existing number makes a sum, and the page explains it.
         ["-0.7", "−0.7", "-0.700", false, false],
         "-0.3-0.4 was taken for −0.7",
         ["-0.7", "−0.7", "-0.700", true, false],
@@ -281,8 +282,8 @@ fn fields_take_expressions() {
     tab.close();
 }
 
-/// A text that was refused goes with its warning as soon as the joint is set, also to the same number, by a posture or by itself, or Escape is
-/// pressed; degrees are taken, and what is no number gets a remedy. The sliders of a wide window have room.
+/// A refused text disappears with its warning when the joint is set: by the same number, by a posture, directly, or by Escape.
+/// Degrees are accepted, and a text that is not a number gets a remedy. The sliders of a wide window have enough space.
 #[test]
 #[ignore = "wide"]
 fn what_sets_a_joint_ends_its_warning() {
@@ -322,8 +323,8 @@ fn what_sets_a_joint_ends_its_warning() {
     tab.close();
 }
 
-/// Where an arm is singular stands in a sentence; of the Panda where the determinant of its first six joints is zero, whose factors are those of
-/// the determinant of as many columns of the Jacobian.
+/// A sentence gives the singular postures of an arm. For the Panda it uses the determinant of the first six joints; its factors are those
+/// of the first six columns of the Jacobian.
 #[test]
 #[ignore = "wide"]
 fn where_an_arm_is_singular_is_said() {
@@ -338,7 +339,7 @@ fn where_an_arm_is_singular_is_said() {
         ),
     ] {
         let Some(mut tab) = opened(&robot(name), 1600, "light") else { return };
-        // Spaces between the parts of a formula are those of the browser.
+        // The browser inserts spaces between the parts of a formula.
         let text = tab.run(where_said).as_str().expect("a text").replace(['\u{2062}', '\u{2061}', '\u{200a}', '\u{2009}'], "");
         assert_eq!(text, said, "{name}");
         if name == "panda7" {
@@ -351,7 +352,7 @@ fn where_an_arm_is_singular_is_said() {
                  return Math.abs(minor(robot.geometricJacobian(q), [0, 1, 2, 3, 4, 5]) / ({product})); }}).map((ratio) => Math.abs(ratio - 1) < 1e-9)"
             );
             assert_eq!(tab.run(&ratios), serde_json::json!([true, true, true, true, true]));
-            // Two joints at values that are found make it singular, wherever the others are.
+            // Two joints at computed values make the arm singular in every posture of the others.
             let pairs = tab.run(&format!(
                 "(async () => {{ {MOVE}(1); const details = document.querySelector('#singular details'); details.open = true; \
                  while (!details.querySelector('button')) await new Promise((done) => setTimeout(done, 20)); \

@@ -1,4 +1,4 @@
-//! The module in Rust (`--trig fast`), compiled and run at the states of the page: every number of it by its bits.
+//! The Rust module (`--trig fast`), compiled and run at the states of the page: all numbers agree bit by bit.
 
 use std::fmt::Write;
 use std::path::Path;
@@ -25,10 +25,10 @@ const FUNCTIONS: &[(&str, &str)] = &[
 /// A posture with its rates and accelerations.
 pub(crate) type State = [Vec<f64>; 3];
 
-/// What a function gives at one state, entry by entry.
+/// The results of all functions in a state, entry by entry.
 pub(crate) type Results = Vec<(String, Vec<f64>)>;
 
-/// Of the crate that the module names, for angles that no slider has.
+/// A substitute for the crate that the module names; it serves only angles outside the ranges of the sliders.
 const LIBM: &str = "pub fn sincos(x: f64) -> (f64, f64) { x.sin_cos() }\n";
 
 const FLAT: &str = "
@@ -42,7 +42,7 @@ fn show(robot: usize, name: &str, value: impl Flat) {
 }
 ";
 
-/// The results of each robot at each of its states.
+/// The results of each robot in each of its states.
 pub(crate) fn results(folder: &Path, robots: &[(Source, Vec<State>)]) -> Vec<Vec<Results>> {
     let mut main = String::from("#![allow(warnings)]\nmod libm;\n");
     let mut body = String::new();

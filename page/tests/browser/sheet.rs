@@ -1,4 +1,4 @@
-//! The data sheet: rows drawn on the arm, units, bodies, and what is said of them.
+//! The data sheet: rows drawn on the arm, units, bodies, and messages about them.
 
 use armgen_codegen::source::Source;
 use serde_json::Value;
@@ -6,7 +6,7 @@ use serde_json::Value;
 use super::pages::{opened, robot};
 use super::MOVE;
 
-/// A row in focus is drawn as on a sheet; limits that are left are marked; keys turn the arm.
+/// The picture draws a focused row as on a data sheet and marks violated limits; keys turn the arm.
 #[test]
 #[ignore = "wide"]
 fn rows_are_drawn_and_limits_marked() {
@@ -17,7 +17,7 @@ fn rows_are_drawn_and_limits_marked() {
                  [...document.querySelectorAll('#arm g[data-dimension=\"1\"] text')].map((text) => text.textContent)";
     assert_eq!(tab.run(texts), serde_json::json!(["θ = 0 rad", "d = 1 m", "a = 0.5 m"]));
     assert_eq!(tab.run("document.activeElement.blur(); document.querySelectorAll('#arm g[data-dimension]').length"), 0);
-    // A warning that is about several rows stands at each, with its line.
+    // A warning about several rows appears at each, with its line.
     let warned = "[...document.querySelectorAll('#sheet [data-warning=\"triangle-inequality\"]')].map((warning) => \
                   [warning.closest('tr').dataset.row, /line \\d+/.exec(warning.textContent)[0]])";
     assert_eq!(tab.run(warned), serde_json::json!([["1", "line 35"], ["2", "line 49"], ["4", "line 77"]]));
@@ -34,8 +34,8 @@ fn rows_are_drawn_and_limits_marked() {
     tab.close();
 }
 
-/// Entries say their units where some joints turn and some slide; bodies their tensors and what the linter says of them; a tick in the list of
-/// layers moves no slider, the tables of frames fit, and the wheel scrolls a narrow window.
+/// Entries show units if the arm mixes revolute and prismatic joints; bodies show tensors and the linter's messages about them.
+/// A tick in the list of layers moves no slider, the tables of frames fit, and the wheel scrolls a narrow window.
 #[test]
 #[ignore = "wide"]
 fn tables_say_units_and_doubts() {

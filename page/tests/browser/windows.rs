@@ -1,4 +1,4 @@
-//! Windows of all widths, both themes, paper: what is cut off, what is in sight, and whom a page can be read by.
+//! Windows of all widths, both themes and print: clipping, visibility and accessibility.
 
 use armgen_page::{Log, Run, Verdict};
 
@@ -6,7 +6,7 @@ use super::driver::{self, Tab};
 use super::pages::{opened, robot, written, written_with};
 use super::MOVE;
 
-/// The widest and the narrowest window, both themes, print: nothing is said, nothing overflows.
+/// In the widest and the narrowest window, both themes, and print there are no messages and nothing overflows.
 #[test]
 #[ignore = "wide"]
 fn pages_fit_windows_themes_and_paper() {
@@ -19,10 +19,10 @@ fn pages_fit_windows_themes_and_paper() {
             assert_eq!(tab.run(cut), 0, "{}: {width} px: the sliders are cut off", source.name());
             let units = "[...document.querySelectorAll('#sliders .rate .unit')].every((unit) => unit.checkVisibility())";
             assert_eq!(tab.run(units), true, "{}: {width} px: units of rates", source.name());
-            // Six digits of seven joints fit where there is room for them at all.
+            // Six digits for seven joints fit if the box is wide enough at all.
             let scrolled = tab.run(&format!("{MOVE}(1); {CUT}"));
             assert_eq!(scrolled, 0, "{}: {width} px: {scrolled} px of B are cut off", source.name());
-            // A warning at a row ends before what fades at the edge.
+            // A warning at a row ends before the fading edge.
             let whole = tab.run(
                 "[...document.querySelectorAll('#sheet .said .warning')].every((one) => \
                  one.getBoundingClientRect().right <= one.closest('.scroll').getBoundingClientRect().right - 35)",
@@ -33,7 +33,7 @@ fn pages_fit_windows_themes_and_paper() {
             tab.close();
         }
     }
-    // Formulas that are longer than a narrow window is wide.
+    // These formulas are wider than a narrow window.
     for source in [robot("ur5"), robot("puma560")] {
         let Some(mut tab) = opened(&source, 360, "light") else { return };
         let overflow = tab.run("document.scrollingElement.scrollWidth - innerWidth");
@@ -43,11 +43,11 @@ fn pages_fit_windows_themes_and_paper() {
     }
 }
 
-/// By how much the inertia matrix is wider than a place of 40 em at least.
+/// The clipped width of the inertia matrix, in a box wider than 640 px.
 const CUT: &str = "(() => { const box = document.querySelector('#number-inertia_matrix .scroll'); \
                    return box.clientWidth <= 640 ? 0 : box.scrollWidth - box.clientWidth; })()";
 
-/// Opens what is folded away, where a page has it.
+/// Opens all folded content of a page.
 const UNFOLD: &str = r#"(async () => {
     const until = async (there) => {
         while (!there()) await new Promise((done) => setTimeout(done, 20));
@@ -67,8 +67,8 @@ const UNFOLD: &str = r#"(async () => {
     await until(() => document.getElementById("postures-said").textContent && [...document.querySelectorAll("[data-equation][open]")].every(set));
 })()"#;
 
-/// In both themes and in a narrow window every control, picture and table has a name, headings of tables say what they head, references lead
-/// somewhere, and every text has a contrast of 4.5 to 1; the key of tabulators reaches all controls in their order, and the focus is seen.
+/// In both themes and in a narrow window, every control, picture and table has a name, and every heading of a table has a scope.
+/// References have targets, and text has a contrast of at least 4.5 to 1. The Tab key reaches all controls in order, with visible focus.
 #[test]
 #[ignore = "wide"]
 fn everybody_can_read_and_use_a_page() {
@@ -111,7 +111,7 @@ fn everybody_can_read_and_use_a_page() {
     assert_eq!(tab.run(astray), serde_json::json!([]), "in the order of the document");
     let missed = "wanted.filter((_, i) => !visited.some(([k, seen]) => k === i && seen)).map((element) => element.outerHTML.slice(0, 100))";
     assert_eq!(tab.run(missed), serde_json::json!([]));
-    // A curve is taken away by its switch, and brought back.
+    // A switch hides a curve and shows it again.
     let switched = "(() => { const one = document.querySelector('[role=switch]'), seen = []; \
                     for (let k = 0; k < 2; k++) { one.dispatchEvent(new KeyboardEvent('keydown', { key: ' ', bubbles: true })); \
                     seen.push(one.getAttribute('aria-checked'), one.closest('.u-series').classList.contains('u-off')); } return seen; })()";
@@ -120,15 +120,15 @@ fn everybody_can_read_and_use_a_page() {
     tab.close();
 }
 
-/// A picture to be looked at, where somebody asks for them.
+/// Keeps a screenshot for inspection, if the environment asks for it.
 fn keep(name: &str, tab: &mut Tab) {
     if std::env::var_os("ARMGEN_PICTURES").is_some() {
         std::fs::write(driver::folder("windows").join(name), tab.picture()).expect("a picture is written");
     }
 }
 
-/// In a narrow window the picture stays in sight while what acts on it is looked at farther down: a run that is followed, a row in focus, a
-/// suspect that is shown. It covers neither what was pressed nor the time line, and leaves when what acts on it does.
+/// In a narrow window the picture stays in sight while the reader uses a control farther down that acts on it: a run, a row, or a
+/// suspect. It covers neither that control nor the time line, and disappears when the control does.
 #[test]
 #[ignore = "wide"]
 fn the_picture_stays_in_sight_of_what_acts_on_it() {
@@ -147,7 +147,7 @@ fn the_picture_stays_in_sight_of_what_acts_on_it() {
     assert_eq!(seen["suspect"], serde_json::json!([true, true, false]), "{seen}");
     assert_eq!(seen["places"], true, "nothing moves where the picture was: {seen}");
     tab.close();
-    // Beside the content it is in sight anyway.
+    // In a wide window, the picture next to the content is always in sight.
     let Some(mut tab) = opened(&robot("scara"), 1600, "light") else { return };
     let wide = "document.querySelector('#sheet tr[data-row=\"2\"]').focus(); document.querySelector('.kept') === null";
     assert_eq!(tab.run(wide), true);
@@ -205,7 +205,7 @@ const FOLLOWED: &str = r##"(async () => {
     return { row: focused, suspect, followed, away, places };
 })()"##;
 
-/// The badge of a singular posture takes one line in a narrow window, and no part of the arm lies under it.
+/// The badge of a singular posture takes a single line in a narrow window and covers no part of the arm.
 #[test]
 #[ignore = "wide"]
 fn the_badge_of_a_narrow_window_leaves_the_arm_free() {
@@ -219,7 +219,7 @@ fn the_badge_of_a_narrow_window_leaves_the_arm_free() {
     }
 }
 
-/// A picture that is out of sight, or smaller than any arm, is not drawn: lengths over its size would be infinite.
+/// A hidden or tiny picture is not drawn, because lengths divided by its size would be infinite.
 #[test]
 #[ignore = "wide"]
 fn a_picture_without_a_size_says_nothing() {
@@ -227,7 +227,7 @@ fn a_picture_without_a_size_says_nothing() {
         return;
     }
     let file = written(&robot("ur5"));
-    // The window of one column keeps room for the badge, by the size of the picture.
+    // The single-column window reserves room for the badge from the size of the picture.
     let Some(mut tab) = Tab::open(&file, 360, "light") else { return };
     let drawn = "document.querySelectorAll('#arm .links .solid').length";
     let before = tab.run(drawn);

@@ -19,7 +19,7 @@ pub struct Rates<T, const N: usize> {
 
 /// A law that turns errors into joint rates.
 pub trait Algorithm<R: Kinematics<N>, const N: usize, const M: usize> {
-    /// Diagonal of K. The law stands where J' K e = 0, as far as joint rates follow from the error.
+    /// Diagonal of K. The joint rates that follow from the error vanish where J' K e = 0.
     fn gain(&self) -> SVector<R::Real, M>;
 
     /// Joint rates, rad/s or m/s, at `q` for the error `e` of the task rows, desired minus actual, the desired velocity `v` of the rows and their
@@ -159,7 +159,8 @@ impl<T: RealField + Copy, O, const M: usize> PseudoInverse<T, O, M> {
 
     /// The same with a damped inverse near singularities, instead of [`ClikError::Singular`] at them.
     ///
-    /// While damping is at work I - J* J is no projector, and dq_0 disturbs the task, by lambda/2 |dq_0| at most, lambda that of [`Damping`].
+    /// While damping is active, I - J* J is no projector, so dq_0 disturbs the task, by at most lambda/2 |dq_0| with the lambda
+    /// of [`Damping`].
     #[must_use]
     pub fn with_damping(self, damping: Damping<T>) -> Self {
         Self { damping: Some(damping), ..self }

@@ -112,7 +112,7 @@ impl<A, T: RealField + Copy, const N: usize, const M: usize> Clik<A, T, N, M> {
         let Limited { value: dq, is_limited: slowed } = self.limits.slow_down(&rates.dq);
         let asked = q + dq * self.period;
         let WithinRange { q: next, stopped } = self.limits.stop(q, &asked);
-        // The rate of a joint that is stopped is what it really did; that of the others stays as it is, to the last bit.
+        // The rate of a stopped joint is its actual rate; the other rates keep every bit.
         let dq = if stopped.is_some() {
             let done = SVector::from_fn(|i, _| if next[i] == asked[i] { dq[i] } else { (next[i] - q[i]) / self.period });
             saturate(&done, self.limits.rate()).value
@@ -135,15 +135,16 @@ impl<A, T: RealField + Copy, const N: usize, const M: usize> Clik<A, T, N, M> {
         Ok((Step { q: next, dq, error, outcome }, slowed))
     }
 
-    /// Steps from `start`, rad or m, towards a resting goal until it is reached, the error does not change any more, or `most_steps` are
-    /// used up.
+    /// Steps from `start`, rad or m, towards a resting goal. It ends when the goal is reached, the arm rests, or `most_steps` are used up.
     ///
-    /// The arm is at rest where a step that no rate limit slowed down changes the error by a millionth of it at most, or by no more than
-    /// rounding does, and where a joint limit is in its way or J' K e = 0: the error, as the law weighs it, points where the arm cannot move. It
-    /// can rest in a singular posture with the goal in line with it, within reach, and see no way there. So where it comes to rest without a
-    /// joint limit in its way it is moved aside, by 0.01 rad or m in each joint the first time and by 0.1 from then on; if after one of the
-    /// latter it comes to rest no nearer, the goal is out of reach. A tolerance that the
-    /// rounding of q += T_s dq does not let a small gain come to, in single precision above all, uses up the steps.
+    /// The arm rests where two conditions meet. First, a step without an active rate limit changed the error by at most a
+    /// millionth of it, or by no more than rounding. Second, a joint limit is in its way, or J' K e = 0: the weighted error
+    /// points in a direction in which the arm cannot move.
+    ///
+    /// A reachable goal in line with the arm can leave it at rest in a singular posture. So an arm that rests without a joint
+    /// limit in its way is moved aside: by 0.01 rad or m in each joint the first time, by 0.1 afterwards. If it comes to rest no
+    /// nearer after a move by 0.1, the goal is out of reach. A tolerance below the rounding of q += T_s dq under a small gain
+    /// uses up the steps, above all in single precision.
     ///
     /// # Errors
     /// Those of [`Clik::step`].
@@ -162,7 +163,8 @@ impl<A, T: RealField + Copy, const N: usize, const M: usize> Clik<A, T, N, M> {
         // How far rounding may move the error of a pose.
         let rounding = T::default_epsilon() * (T::one() + goal.position.norm());
         let mut q = *start;
-        // The step that led to `q`, unless it was slowed down (and not stopped besides), and how far from the goal the arm has come to rest before.
+        // The step that led to `q`, unless a rate limit slowed it down without stopping it; and the distance from the goal at the
+        // previous rest.
         let (mut last, mut rested_at): (Option<Step<T, N, M>>, Option<T>) = (None, None);
         let [first_aside, next_aside] = [0.01, 0.1].map(lit::<T>);
         let mut aside = first_aside;
@@ -192,7 +194,7 @@ impl<A, T: RealField + Copy, const N: usize, const M: usize> Clik<A, T, N, M> {
             if rested_at.is_some_and(|before| distance > before * lit(0.999)) {
                 return reached(Outcome::OutOfReach);
             }
-            // Strong damping lets go of a singular posture so slowly beside it that the arm seems to rest there: that is not judged.
+            // Near a singular posture strong damping makes the arm so slow that it seems to rest; this move is not judged.
             rested_at = (aside == next_aside).then_some(distance);
             last = None;
             let by = SVector::from_fn(|i, _| if i % 2 == 0 { aside } else { -aside });
@@ -205,8 +207,8 @@ impl<A, T: RealField + Copy, const N: usize, const M: usize> Clik<A, T, N, M> {
     }
 }
 
-/// Whether the law moves no joint for the weighted error e = K (x_d - x): J' e vanishes, to a hundredth of what a direction fully in reach
-/// would give.
+/// Whether the law moves no joint for the weighted error e = K (x_d - x): J' e is below a hundredth of |J| |e|, the scale of a
+/// direction that the arm can follow.
 fn points_out<T: RealField + Copy, const M: usize, const N: usize>(j: &SMatrix<T, M, N>, e: &SVector<T, M>) -> bool {
     j.tr_mul(e).norm() <= lit::<T>(0.01) * j.norm() * e.norm()
 }

@@ -23,8 +23,8 @@ pub struct WithinRange<T, const N: usize> {
 impl<T: RealField + Copy, const N: usize> JointLimits<T, N> {
     /// Rates up to `rate`, rad/s or m/s, to either side; joint variables without limits.
     ///
-    /// Every rate has a limit, since none bounds what an inverse of the Jacobian asks for near a singular posture: where an emitted robot's
-    /// `VELOCITY_LIMITS` holds an infinite one, choose one.
+    /// An inverse of the Jacobian asks for unbounded rates near a singular posture, so every rate needs a finite limit. Choose a
+    /// limit where `VELOCITY_LIMITS` of an emitted robot is infinite.
     ///
     /// # Errors
     /// Where a rate is not positive and finite.
@@ -67,7 +67,7 @@ impl<T: RealField + Copy, const N: usize> JointLimits<T, N> {
 
     /// `next` kept within the range.
     ///
-    /// A joint that stands outside already, at `q`, may move inwards or stay.
+    /// A joint that is already outside at `q` may move inwards or stay.
     pub fn stop(&self, q: &SVector<T, N>, next: &SVector<T, N>) -> WithinRange<T, N> {
         let Some((lower, upper)) = &self.range else {
             return WithinRange { q: *next, stopped: None };
@@ -83,7 +83,7 @@ impl<T: RealField + Copy, const N: usize> JointLimits<T, N> {
         WithinRange { q, stopped }
     }
 
-    /// Whether joint `i` stands at or beyond a limit at `q` and the rate `dq` leads further out.
+    /// Whether `q` is at or beyond a limit of joint `i` and the rate `dq` leads further out.
     pub(super) fn is_outwards(&self, i: usize, q: T, dq: T) -> bool {
         self.range.as_ref().is_some_and(|(lower, upper)| (q >= upper[i] && dq > T::zero()) || (q <= lower[i] && dq < T::zero()))
     }

@@ -1,7 +1,7 @@
 //! Objectives for the null space: dq_0 = k_0 (dw/dq)' climbs w without disturbing the task (the book, Sect. 3.5.1, eq. 3.55).
 //!
-//! With a damped inverse J* it does disturb the task while damping is at work: I - J* J is no projector, and J (I - J* J) dq_0 is
-//! lambda^2 sigma_i / (sigma_i^2 + lambda^2) times the component of dq_0 of each singular direction, at most lambda/2 of it.
+//! With a damped inverse J* it disturbs the task while damping is active, because I - J* J is no projector. J (I - J* J) scales
+//! the component of dq_0 along each singular direction by lambda^2 sigma_i / (sigma_i^2 + lambda^2), which is at most lambda/2.
 
 use crate::{
     linalg::lit,
@@ -30,8 +30,8 @@ impl<R: Kinematics<N>, const N: usize> Objective<R, N> for NoObjective {
 
 /// The manipulability w of these task rows (the book, eq. 3.56), which need not be those that are followed.
 ///
-/// Where the followed task relaxes a row, take the rows of the *full* task: the w of the relaxed one can grow all the way into a
-/// singularity of the full one.
+/// Where the followed task relaxes a row, take the rows of the *full* task. The w of the relaxed task can grow all the way into a
+/// singularity of the full task.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Manipulability<const K: usize> {
     /// The rows whose manipulability counts.

@@ -1,17 +1,19 @@
 //! Second-order closed-loop inverse kinematics: joint accelerations, hence references for controllers.
 //!
-//! ddq = J^+ (a_d + K_D de + K_P e - dJ dq) (the book, Sect. 3.7.4, eq. 3.100). The accelerations are held from sample to sample, and
-//! how they are integrated matters. Explicit Euler, q += T_s dq with the old rates, lags half a step of acceleration behind what
-//! a held acceleration does; the hold-consistent form is that motion exactly:
+//! ddq = J^+ (a_d + K_D de + K_P e - dJ dq) (the book, Sect. 3.7.4, eq. 3.100). The accelerations are held from sample to sample,
+//! so the integration matters. Explicit Euler, q += T_s dq with the old rates, lags the motion under a held acceleration by half
+//! a step. The hold-consistent form is this motion exactly:
 //!
 //! ```text
 //! q += T_s dq + 1/2 T_s^2 ddq,    dq += T_s ddq
 //! ```
 //!
-//! A controller that is given (q_d, dq_d, ddq_d) and holds its torque needs the latter: with the former, q_d and ddq_d contradict each
-//! other, and the controller follows the contradiction. One sample of the latter does as well: that at which a joint meets its limit. The
-//! joint stands at the limit with the rate 0 at the next sample, ddq = -dq / T_s, so its q is off this motion, by at most T_s / 2 times the
-//! larger of its rate and the rate that it would have had.
+//! A controller that receives (q_d, dq_d, ddq_d) and holds its torque needs the hold-consistent form. With explicit Euler q_d and
+//! ddq_d contradict each other, and the controller follows the contradiction.
+//!
+//! One sample of the hold-consistent form is inconsistent too: the sample at which a joint meets its limit. At the next sample
+//! the joint is at the limit with rate 0, so ddq = -dq / T_s. Its q differs from the held motion by at most T_s / 2 times the
+//! larger of its rate and the rate without the limit.
 //!
 //! Sampled, errors of linear rows die away where
 //!
@@ -91,8 +93,8 @@ impl<T: RealField + Copy, const N: usize, const M: usize> SecondOrder<T, N, M> {
 
     /// The same with a damped inverse near singularities, instead of [`ClikError::Singular`] at them.
     ///
-    /// While damping is at work I - J* J is no projector, and null-space damping disturbs the task, by lambda/2 times its size at most,
-    /// lambda that of [`Damping`].
+    /// While damping is active, I - J* J is no projector, so null-space damping disturbs the task, by at most lambda/2 times its
+    /// size with the lambda of [`Damping`].
     #[must_use]
     pub fn with_damping(self, damping: Damping<T>) -> Self {
         Self { damping: Some(damping), ..self }

@@ -7,13 +7,13 @@
 //! u = Y pi^ + tau_known + F_l^(q, dq) + K_D sigma,        d pi^/dt = K_pi^-1 Y' sigma
 //! ```
 //!
-//! with F_l^ the friction that grows with the load, which is not linear in the parameters and is taken from the model. Where that is the
-//! plant's, V = 1/2 sigma' B sigma + e' Lambda K_D e + 1/2 (pi^ - pi)' K_pi (pi^ - pi) decreases: the errors vanish, the estimate need not
-//! be right. Where it is not, because the load is another one, dV/dt has sigma' (F_l^ - F_l) beside: then the errors need not vanish, and
-//! without a projection the estimate may drift.
+//! F_l^ is the friction that grows with the load; it is not linear in the parameters, so the law takes it from the model. Where
+//! it equals the friction of the plant, V = 1/2 sigma' B sigma + e' Lambda K_D e + 1/2 (pi^ - pi)' K_pi (pi^ - pi) decreases.
+//! Then the errors vanish, although the estimate need not be right. Where another load makes it differ, dV/dt gains the term
+//! sigma' (F_l^ - F_l): the errors need not vanish, and without a projection the estimate may drift.
 //!
-//! That holds in continuous time. Sampled, the law is unstable where Lambda and K_D are too large for the period, whatever V says: compute
-//! the spectral radius of the sampled loop first (module `stability`).
+//! That holds in continuous time. The sampled law is unstable where Lambda and K_D are too large for the period, whatever V
+//! suggests: compute the spectral radius of the sampled loop first (module `stability`).
 
 use super::{check_joint, issue, ControlError, Torque, TorqueLimits};
 use crate::{
@@ -62,8 +62,8 @@ pub struct Adaptive<T, const N: usize, const P: usize> {
 }
 
 impl<T: RealField + Copy, const N: usize, const P: usize> Adaptive<T, N, P> {
-    /// Diagonals of Lambda, 1/s, of K_D, N m s/rad or N s/m, and of K_pi, J per squared unit of its parameter (J/kg^2 for a mass);
-    /// the estimate to start from; the sampling period, s.
+    /// Diagonals of three gains: Lambda in 1/s; K_D in N m s/rad or N s/m; K_pi in J per squared unit of its parameter (J/kg^2
+    /// for a mass). Then the initial estimate, and the sampling period in s.
     ///
     /// # Errors
     /// Where a gain or the period is not positive and finite, or the estimate is not finite.
@@ -99,14 +99,14 @@ impl<T: RealField + Copy, const N: usize, const P: usize> Adaptive<T, N, P> {
         self
     }
 
-    /// The same with torques limited; while a limit is at work the estimate rests.
+    /// The same with torques limited; while a limit is active the estimate rests.
     #[must_use]
     pub fn with_torque_limits(self, limits: TorqueLimits<T, N>) -> Self {
         Self { limits: Some(limits), ..self }
     }
 
-    /// The same with the estimate at the true parameters, at the bound of the interval that excludes them, and at the present value of what is
-    /// frozen. What is held by a bound moves no more than what is frozen.
+    /// The same controller with the estimate at the true parameters. Where the interval excludes a parameter, it takes the
+    /// nearest bound; a frozen parameter keeps its present value. A parameter at such a bound does not move, like a frozen one.
     #[cfg(feature = "std")]
     pub(crate) fn at_rest(&self, parameters: &SVector<T, P>) -> Self {
         let mut settled = *self;
@@ -178,7 +178,7 @@ impl<T: RealField + Copy, const N: usize, const P: usize> Adaptive<T, N, P> {
     }
 }
 
-/// The estimate in the interval, but for what is frozen: what has the gain 0.
+/// Projects the estimate onto the interval, except frozen parameters (gain 0).
 fn project<T: RealField + Copy, const P: usize>(
     estimate: &SVector<T, P>,
     interval: &Interval<T, P>,

@@ -1,7 +1,7 @@
 //! Inverse-dynamics control (the book, Sect. 8.5.2, eqs. 8.56-8.60).
 //!
-//! With u = B y + n and a perfect model, ddq = y. Choosing y = ddq_d + K_D de + K_P e leaves dde + K_D de + K_P e = 0:
-//! n decoupled, linear, second-order errors with natural frequency sqrt(k_P) and damping k_D / (2 sqrt(k_P)).
+//! With u = B y + n and a perfect model, ddq = y. The choice y = ddq_d + K_D de + K_P e leaves dde + K_D de + K_P e = 0. The n
+//! errors are decoupled, linear and of second order, with natural frequency sqrt(k_P) and damping k_D / (2 sqrt(k_P)).
 
 use super::{check_joint, issue, ControlError, Torque, TorqueLimits};
 use crate::{

@@ -13,11 +13,11 @@ pub struct TorqueLimits<T, const N: usize> {
 }
 
 impl<T: RealField + Copy, const N: usize> TorqueLimits<T, N> {
-    /// The limits of the joints, N m or N, on the joint side of the gears; an infinite one never acts, so that `EFFORT_LIMITS` of an emitted
-    /// robot fits whether or not the description gives all of them.
+    /// The limits of the joints, N m or N, on the joint side of the gears. An infinite limit never acts, so `EFFORT_LIMITS` of an
+    /// emitted robot fits even where its description lacks some limits.
     ///
     /// # Errors
-    /// Where one is not positive.
+    /// Where a limit is not positive.
     pub fn new(bound: [T; N]) -> Result<Self, SettingError> {
         let bound = SVector::from(bound);
         positive_or_infinite(Setting::TorqueLimit, &bound)?;

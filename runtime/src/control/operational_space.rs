@@ -6,16 +6,17 @@
 //! y = J^+ (a_d + K_D de + K_P e + K_I int e dt - dJ dq) + (I - J^+ J) y_0
 //! ```
 //!
-//! a perfect model leaves dde + K_D de + K_P e + K_I int e = 0 in each linear row, and to second order in the whole rotation error in the
-//! angular rows ([`Task::error`]). The integral takes away the error under a constant uncertainty such as an unknown load. J^+ is the right pseudo-inverse of the task rows (the inverse where M = N); y_0 shapes what an
-//! arm with more joints than task rows does meanwhile, and vanishes where M = N.
+//! a perfect model leaves dde + K_D de + K_P e + K_I int e = 0: exactly in linear rows, in angular rows to second order in the
+//! whole rotation error ([`Task::error`]). The integral removes the error under a constant uncertainty such as an unknown load.
+//! J^+ is the right pseudo-inverse of the task rows, the inverse where M = N. y_0 shapes the motion in the null space of an arm
+//! with more joints than task rows; the term vanishes where M = N.
 //!
 //! The integral runs away while a torque limit keeps the error from closing. So, while a torque is cut, a row of the integral moves
 //! only towards zero, and it never leaves its own limit where one is given. Damping keeps the error from closing as well, and the
 //! integral moves on: give it a limit ([`OperationalSpace::with_integral_limit`]) where the arm may stay near a singular posture.
 //!
-//! While damping is at work the direction of the singular value sigma obeys dde + g (K_D de + K_P e + K_I int e) = 0 with
-//! g = sigma^2 / (sigma^2 + lambda^2): with equal gains in all rows it is stable for K_I < g K_P K_D, where K_I < K_P K_D would do without.
+//! While damping is active, the direction of the singular value sigma obeys dde + g (K_D de + K_P e + K_I int e) = 0 with g = sigma^2 /
+//! (sigma^2 + lambda^2). With equal gains in all rows it is stable for K_I < g K_P K_D. Without damping K_I < K_P K_D suffices.
 
 use super::{check, issue, ControlError, Torque, TorqueLimits};
 use crate::{
@@ -27,7 +28,7 @@ use crate::{
 };
 use nalgebra::{RealField, SVector};
 
-/// What the joints do in the null space of the task: y_0 = K_N (q_N - q) - D_N dq.
+/// Joint accelerations in the null space of the task: y_0 = K_N (q_N - q) - D_N dq.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct NullSpace<T, const N: usize> {
     stiffness: SVector<T, N>,
@@ -114,8 +115,8 @@ impl<T: RealField + Copy, const N: usize, const M: usize> OperationalSpace<T, N,
 
     /// The same with a damped inverse near singularities, instead of [`ControlError::Singular`] at them.
     ///
-    /// While damping is at work K_I has to be smaller (the text of this module says by what), and y_0 disturbs the task, by lambda/2 |y_0| at
-    /// most, since I - J* J is no projector then; lambda is that of [`Damping`].
+    /// While damping is active K_I has to be smaller: the documentation of this module gives the bound. I - J* J is then no
+    /// projector, so y_0 disturbs the task, by at most lambda/2 |y_0| with the lambda of [`Damping`].
     #[must_use]
     pub fn with_damping(self, damping: Damping<T>) -> Self {
         Self { damping: Some(damping), ..self }

@@ -1,7 +1,7 @@
 //! PD control with gravity compensation (the book, Sect. 8.5.1, eq. 8.51).
 //!
-//! u = g^(q) + K_P e + K_D de holds any posture with the model's gravity right, for all positive K_P and K_D in continuous time:
-//! V = 1/2 dq' B dq + 1/2 e' K_P e decreases along K_D and viscous friction. With de = -dq for a posture that is held, this is eq. 8.51.
+//! With the right gravity in the model, u = g^(q) + K_P e + K_D de holds any posture for all positive K_P and K_D in continuous time. V = 1/2
+//! dq' B dq + 1/2 e' K_P e decreases through K_D and viscous friction. For a constant posture de = -dq, which gives eq. 8.51.
 //!
 //! The law knows no friction: Coulomb friction F_c may hold a joint where |K_P e| <= F_c, and an offset F_0 moves its rest to K_P e = F_0.
 

@@ -54,8 +54,8 @@ impl<T: RealField + Copy, const M: usize, const N: usize> RightInverse<T, M, N> 
         (Self { q, r }, full_rank)
     }
 
-    /// The factors of [J, lambda I], M x (N + M), of which q is kept but for its last rows: what `solve` gives then is the part in J of the
-    /// least (x, z) with J x + lambda z = v, which is x = J' (J J' + lambda^2 I)^-1 v, and no condition number is squared.
+    /// The factors of [J, lambda I], M x (N + M); q is kept without its last rows. `solve` then returns the x of the least (x, z)
+    /// with J x + lambda z = v. This is x = J' (J J' + lambda^2 I)^-1 v, computed without squaring a condition number.
     fn damped(j: &SMatrix<T, M, N>, lambda: T) -> Self {
         let (mut q, mut tails) = (j.transpose(), SMatrix::<T, M, M>::from_diagonal_element(lambda));
         let mut r = SMatrix::<T, M, M>::zeros();
@@ -149,7 +149,7 @@ messages! { DampingError,
 pub struct Solution<T, const N: usize> {
     /// The joint vector.
     pub x: SVector<T, N>,
-    /// Whether damping was at work: J x differs from v.
+    /// Whether damping was active: J x differs from v.
     pub damped: bool,
 }
 
@@ -183,7 +183,7 @@ impl<T: RealField + Copy> Damping<T> {
         DampingBelow { threshold }
     }
 
-    /// The threshold w_0 below which damping is at work.
+    /// The threshold w_0 below which damping is active.
     pub fn threshold(&self) -> T {
         self.threshold
     }

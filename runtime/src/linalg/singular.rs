@@ -16,7 +16,7 @@ pub struct LeftSingular<T, const M: usize> {
     pub u: SMatrix<T, M, M>,
 }
 
-/// Sweeps over all pairs of rows: quadratic convergence makes six to eight typical, the bound is for what is not finite.
+/// Sweeps over all pairs of rows: quadratic convergence makes six to eight typical, the bound ends the loop on numbers that are not finite.
 const SWEEPS: usize = 40;
 
 /// Singular values and left singular vectors of J, M x N, for any M and N (with M > N, M - N of them are zero).

@@ -3,15 +3,15 @@
 use super::Kinematics;
 use nalgebra::{ComplexField, Matrix4, RealField, SVector};
 
-/// What is known of all the postures at a pose.
+/// How complete the postures at a pose are.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Verdict {
     /// These are all, as far as the construction can tell; a change of the pose by its rounding keeps their number.
     Complete,
     /// None was found, and none is near.
     Unreachable,
-    /// A change of the pose by its own rounding could change their number; two that have met are listed once, as `double`, and
-    /// two that may have met each as `double`.
+    /// A change of the pose by its own rounding could change their number. Two postures that have met are listed once, as
+    /// `double`; two that may have met are each `double`.
     NearDouble,
     /// Some joints can move while the end effector stays.
     Continuum,
@@ -28,21 +28,21 @@ pub struct Posture<T, const N: usize> {
     pub branch: u16,
     /// Two postures meet here.
     pub double: bool,
-    /// Bit i: joint i + 1 has one of many values, which the construction chose: some joints can move while the end effector stays. The null space of
-    /// the Jacobian says which; one that has to move along with these may be without a bit.
+    /// Bit i: the construction chose one of many values for joint i + 1, because some joints can move while the end effector
+    /// stays. The null space of the Jacobian shows which joints; a joint that moves along with them may lack its bit.
     pub free: u32,
 }
 
 /// All postures at a pose, at most `K`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Postures<T, const N: usize, const K: usize> {
-    /// What is known of them.
+    /// How complete they are.
     pub verdict: Verdict,
-    /// Where there is none: by how much the construction missed. A hint for people, not a bound; otherwise 0.
+    /// Without a posture, by how much the construction missed: a hint for people, not a bound. Otherwise 0.
     pub miss: T,
     /// How many there are.
     pub count: usize,
-    /// The postures; those from `count` on say nothing.
+    /// The postures; entries from `count` on have no meaning.
     pub all: [Posture<T, N>; K],
 }
 
@@ -58,7 +58,7 @@ pub trait JointRanges<const N: usize>: Kinematics<N> {
     /// Whether a joint turns, so that a whole turn more is the same posture.
     fn turns(&self) -> [bool; N];
 
-    /// Lowest and highest joint variable, rad or m; infinite where the description gives none.
+    /// Lowest and highest joint variable, rad or m; infinite where the description gives no limit.
     fn position_limits(&self) -> [[Self::Real; 2]; N];
 
     /// The whole turns nearest to `near` added to the angles of `q`.
@@ -87,11 +87,11 @@ pub trait InverseKinematics<const N: usize, const K: usize>: JointRanges<N> {
     fn branch_signs(&self) -> u16;
 }
 
-/// Inverse kinematics of an arm with one joint more than its task asks for: all joint variables that reach a pose with a given value of one argument,
-/// the `redundancy`, at most `K` where they are finitely many.
+/// Inverse kinematics of an arm with one joint more than its task has rows. The argument `redundancy` fixes the free motion: at
+/// most `K` postures reach a pose then, where they are finitely many.
 ///
-/// The redundancy is the variable of a joint, rad or m, or the swivel angle of the elbow about the line from shoulder to wrist, rad; the emitted
-/// module says which. Emitted as [`InverseKinematics`] is.
+/// The redundancy is the variable of a joint, rad or m, or the swivel angle of the elbow about the line from shoulder to wrist,
+/// rad. The emitted module documents which. Emitted as [`InverseKinematics`] is.
 pub trait RedundantInverseKinematics<const N: usize, const K: usize>: JointRanges<N> {
     /// All q with T_e(q) = `pose` and [`redundancy`](RedundantInverseKinematics::redundancy)(q) = `redundancy`; lengths in m. Limits are
     /// not looked at.

@@ -14,7 +14,7 @@ use nalgebra::{RealField, SVector};
 /// How a run in continuous time goes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct ContinuousOptions {
-    /// How often the state is logged, and the law told of a new sample of its reference.
+    /// Period at which the state is logged and the law receives a new sample of its reference.
     pub period: Duration,
     /// How long to run; the last sample is the last multiple of the period that is not beyond it.
     pub duration: Duration,

@@ -1,7 +1,7 @@
 //! Integration of ordinary differential equations.
 //!
-//! The classical Runge-Kutta method of fourth order with fixed steps, and the pair of Dormand and Prince (1980) of orders 5 and 4 with
-//! steps chosen from the difference of both.
+//! The classical Runge-Kutta method of fourth order with fixed steps, and the adaptive pair of Dormand and Prince (1980) of
+//! orders 5 and 4. The difference of the pair determines the step.
 
 use crate::linalg::lit;
 use nalgebra::{RealField, SVector};
@@ -145,7 +145,7 @@ pub fn dormand_prince<T: RealField + Copy, X: Phase<T>>(
             lit(0.2)
         };
         if error <= T::one() && last {
-            // A step cut short by the end of the period says nothing against the longer one.
+            // A step cut short by the end of the period is no reason against the longer step.
             *step = step.max(h * growth);
             return Ok(x);
         }

@@ -2,7 +2,7 @@
 
 use std::fmt;
 
-/// What a run leaves behind: one row a recorded sample, one named column a quantity.
+/// Record of a run: one row per recorded sample, one named column per quantity.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Log {
     names: Vec<String>,
@@ -41,7 +41,7 @@ impl Log {
         self.values.chunks_exact(self.names.len().max(1))
     }
 
-    /// The column of this name, from top to bottom; `None` if there is none.
+    /// The column of this name, from top to bottom, if it exists.
     pub fn column(&self, name: &str) -> Option<impl Iterator<Item = f64> + '_> {
         let index = self.names.iter().position(|n| n == name)?;
         Some(self.rows().map(move |row| row[index]))
@@ -49,7 +49,7 @@ impl Log {
 
     /// Largest |value| of a column over the rows for which `within` holds; `None` if there is no such column.
     ///
-    /// NaN where one of the values is NaN, or there is no such row: what is not known is below no bound.
+    /// NaN where one of the values is NaN, or without such a row: an unknown value must not pass any bound.
     pub fn peak(&self, name: &str, within: impl Fn(&[f64]) -> bool) -> Option<f64> {
         self.reduce(name, within, |a, b| a.abs().max(b.abs())).map(f64::abs)
     }

@@ -10,7 +10,7 @@ pub struct Plant<'a, R, T, const N: usize> {
     robot: &'a R,
     state: State<T, N>,
     integrator: Integrator<T>,
-    /// What the adaptive integrator tries next.
+    /// Next step of the adaptive integrator, s.
     step: T,
     audit: Option<Audit<T>>,
 }
@@ -33,7 +33,7 @@ pub struct Energy<T> {
     pub supplied: T,
     /// Work of friction since the start, int F' dq dt with all friction in F, positive where friction brakes.
     pub dissipated: T,
-    /// What does not add up: T + U - (T + U at the start) - supplied + dissipated. Zero but for the error of integration.
+    /// Imbalance of energy: T + U - (T + U at the start) - supplied + dissipated. Zero except for the error of integration.
     pub residual: T,
 }
 

@@ -14,7 +14,7 @@ pub struct RunOptions<T, const N: usize> {
     pub duration: Duration,
     /// How the plant is integrated between samples.
     pub integrator: Integrator<T>,
-    /// What the controller sees.
+    /// Sensor between plant and controller.
     pub sensor: Sensor<T, N>,
     /// Whether energies are accounted for.
     pub audit: bool,
@@ -37,7 +37,7 @@ pub struct Sample<T, const N: usize> {
     pub time: Duration,
     /// The true state.
     pub state: State<T, N>,
-    /// What the controller saw of it.
+    /// The state as measured.
     pub measured: State<T, N>,
     /// The torque held from `time` on, N m or N.
     pub tau: SVector<T, N>,
@@ -72,7 +72,7 @@ impl fmt::Display for Divergence {
 /// The joint rate or joint variable beyond the divergence bound, if any; rates first, since divergence shows there first.
 pub(super) fn diverged<T: RealField + Copy, const N: usize>(state: &State<T, N>) -> Option<Divergence> {
     let first = |x: &SVector<T, N>| {
-        // The largest, and what is no number before all others.
+        // Infinities and NaN count as largest.
         let size = |i: usize| if x[i].is_finite() { x[i].abs() } else { lit(f64::MAX) };
         let largest = (0..N).reduce(|a, b| if size(b) > size(a) { b } else { a })?;
         (size(largest) > lit(DIVERGENCE_BOUND)).then_some(largest)

@@ -1,4 +1,4 @@
-//! What the controller sees of the state.
+//! The sensor: the state as the controller receives it.
 
 use crate::{
     linalg::{lit, to_f64},
@@ -9,7 +9,7 @@ use std::collections::VecDeque;
 
 /// Normally distributed numbers from a seed: SplitMix64 (Steele, Lea, Flood, 2014) and the transformation of Box and Muller (1958).
 ///
-/// Its sine, cosine and logarithm are those of libm, so equal seeds give equal bits everywhere.
+/// Its sine, cosine and logarithm come from libm, so equal seeds give equal bits everywhere.
 #[derive(Clone, Debug)]
 pub struct Noise {
     state: u64,
@@ -70,7 +70,7 @@ impl<T: RealField + Copy, const N: usize> Sensor<T, N> {
         Self { delay, position_deviation, velocity_deviation, noise: Noise::new(seed), seen: VecDeque::new() }
     }
 
-    /// What is measured at the sample at which the true state is `state`; to be called once a sample.
+    /// Measurement of the true state `state`; to be called once a sample.
     pub fn measure(&mut self, state: &State<T, N>) -> State<T, N> {
         self.seen.push_back(*state);
         if self.seen.len() - 1 > self.delay {

@@ -8,7 +8,7 @@ impl Delay {
     /// The torque acts at the sample from whose measurement it was computed.
     pub const NONE: Delay = Delay(0);
 
-    /// The torque acts so many samples later.
+    /// The torque acts this many samples later.
     #[must_use]
     pub const fn samples(samples: usize) -> Self {
         Delay(samples)

@@ -1,8 +1,8 @@
 //! Eigenvalues of a general real matrix: Hessenberg form, then implicit double-shift QR steps (Francis, 1961; Golub, Van Loan,
 //! *Matrix Computations*, Alg. 7.5.1) with exceptional shifts.
 //!
-//! Decoupled loops with equal gains have equal eigenvalues, on which steps with the usual shifts alone may circle for ever, as those
-//! of nalgebra's Schur decomposition do; every tenth step without success therefore takes another shift.
+//! Decoupled loops with equal gains have equal eigenvalues. On these, steps with the usual shifts alone may cycle for ever, as in
+//! nalgebra's Schur decomposition. So every tenth step without success takes another shift.
 
 use crate::linalg::lit;
 use nalgebra::{linalg::Hessenberg, DMatrix, RealField};
@@ -20,7 +20,7 @@ pub(super) fn moduli<T: RealField + Copy>(m: DMatrix<T>) -> Option<Vec<T>> {
     let mut h = if n > 2 { Hessenberg::new(m).unpack_h() } else { m };
     let size = h.iter().fold(T::zero(), |sum, x| sum + x.abs());
     let mut steps = 0;
-    // The block low..end is at work; beyond `end` all is found.
+    // low..end is the active block; all eigenvalues beyond `end` are found.
     let mut end = n;
     while end > 0 {
         let last = end - 1;
@@ -163,7 +163,7 @@ mod tests {
 
     #[test]
     fn similar_matrices_share_their_spectrum() {
-        // diag(.9, .9, .5, -.7 +- .3i) behind a full similarity, repeated eigenvalue included.
+        // diag(.9, .9, .5, -.7 +- .3i) under a full similarity transformation, repeated eigenvalue included.
         let mut d = DMatrix::<f64>::from_diagonal(&nalgebra::DVector::from_vec(vec![0.9, 0.9, 0.5, -0.7, -0.7]));
         (d[(3, 4)], d[(4, 3)]) = (0.3, -0.3);
         let t = DMatrix::from_fn(5, 5, |i, j| 1.0 / (1.0 + i as f64 + j as f64) + if i == j { 1.0 } else { 0.0 });
@@ -178,7 +178,7 @@ mod tests {
 
     #[test]
     fn equal_eigenvalues_under_rounding() {
-        // Four integrals of one rate: c I, but for roundings.
+        // Four integrals of one rate: c I, except for roundings.
         let noise = |i: usize, j: usize| if i == j { 0.999996 } else { (i as f64 - 1.3 * j as f64) * 4e-16 };
         let found = moduli(DMatrix::<f64>::from_fn(4, 4, noise)).unwrap();
         assert!(found.len() == 4 && found.iter().all(|x| (x - 0.999996).abs() < 1e-14), "{found:?}");

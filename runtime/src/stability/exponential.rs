@@ -1,7 +1,7 @@
 //! The matrix exponential by scaling, Taylor series and squaring: exp(M) = (exp(M / 2^s))^(2^s).
 //!
-//! With |M| / 2^s <= 1/2 the series is below rounding after 16 terms of f64 (1/2^17/17! = 2e-20). nalgebra's `exp` comes with its
-//! feature `std`, which also brings matrix products whose bits depend on the machine.
+//! With |M| / 2^s <= 1/2 the rest of the series after 16 terms is below the rounding of f64: 1/2^17/17! = 2e-20. The function
+//! `exp` of nalgebra needs its feature `std`, which also brings matrix products whose bits depend on the machine.
 
 use crate::linalg::lit;
 use nalgebra::{DMatrix, RealField};

@@ -2,8 +2,8 @@
 //! variables and δv of the rates dq.
 //!
 //! At rest C dq is of second order and drops out, so the derivatives are B, F and dg/dq of the model. B and F come from the model
-//! exactly; dg/dq by central differences of g, and so does the derivative of what holds an arm off its reference (to the square of their
-//! step, cube root of epsilon).
+//! exactly. dg/dq, and the derivative of the torque that holds an arm off its reference, come from central differences. Their
+//! step is the cube root of epsilon, their error of the order of its square.
 
 use super::{difference::derivative, rest::rest};
 use crate::{
@@ -60,9 +60,9 @@ pub trait Linearise<R: Dynamics<N>, const N: usize> {
 
 /// A controller that can be linearised where the arm can rest under it.
 ///
-/// Rest asks the torque of the plant's gravity and of what its friction is at rest, its offset: estimates are then the parameters of the
-/// plant (the bound of their projection where that excludes them; frozen ones stay), integrals are what makes up for the model, and a law
-/// with neither, or a row of it, rests off its reference. Coulomb friction, which holds an arm at any posture nearby, counts as none.
+/// At rest the torque equals the plant's gravity and the offset of its friction. Estimates are the parameters of the plant, or
+/// the bound of their projection; frozen estimates stay. Integrals compensate the model error. A law, or row, without either
+/// rests off its reference. Coulomb friction, which holds an arm at any posture nearby, is left out.
 pub trait LineariseAtRest<P: Dynamics<N>, R: Dynamics<N, Real = P::Real>, const N: usize>: Linearise<R, N> {
     /// Its feedback about rest under the reference `q`; `None` where the law is singular.
     fn settle(&self, plant: &P, model: &R, q: &SVector<R::Real, N>) -> Option<Rest<R::Real, N>>;
@@ -81,9 +81,9 @@ fn lack<P: Dynamics<N>, R: Dynamics<N, Real = P::Real>, const N: usize>(
 /// A rate, rad/s or m/s, beyond the Stribeck velocity of any joint: measured ones are below 1.
 const FADED: f64 = 16.0;
 
-/// Viscous friction F_v, column by column: F(2 x e_i) - F(x e_i), in which Coulomb friction cancels, less 7/12 of the second difference F(3
-/// x e_i) - 2 F(2 x e_i) + F(x e_i) = 12 F_3 x³ e_i, which takes cubic friction out; over x, a rate, rad/s or m/s, at which nothing is left
-/// of Stribeck friction.
+/// Viscous friction F_v, column by column, from friction at x, 2 x and 3 x, with x a rate, rad/s or m/s, at which Stribeck
+/// friction has faded. F(2 x e_i) - F(x e_i) cancels Coulomb friction. Subtracting 7/12 of the second difference F(3 x e_i) - 2
+/// F(2 x e_i) + F(x e_i) = 12 F_3 x³ e_i removes cubic friction. The result is divided by x.
 pub(crate) fn viscous<R: Dynamics<N>, const N: usize>(robot: &R) -> SMatrix<R::Real, N, N> {
     let mut f = SMatrix::<R::Real, N, N>::zeros();
     for i in 0..N {
@@ -107,7 +107,7 @@ fn rows_scaled<T: RealField + Copy, const R: usize, const N: usize>(k: &SVector<
     SMatrix::from_fn(|i, j| k[i] * m[(i, j)])
 }
 
-/// Of u = B y + n about the posture `q`, with dy/dq = -`k_p`, dy/dv = -`k_d`, and y = `y` at rest.
+/// Feedback of u = B y + n about the posture `q`, with dy/dq = -`k_p`, dy/dv = -`k_d`, and y = `y` at rest.
 fn inverse_dynamics<R: Dynamics<N>, const N: usize>(
     model: &R,
     q: &SVector<R::Real, N>,
@@ -210,9 +210,9 @@ impl<P: Dynamics<N>, R: Dynamics<N, Real = P::Real>, const N: usize> LineariseAt
     }
 }
 
-/// At rest at q under a reference e from there dq_r = Lambda e, sigma = Lambda e - Lambda δq - δv, and the estimate moves along K_pi^-1 Y_0'
-/// with Y_0 = Y(q, 0, 0, 0): its states are the at most N combinations that Y_0 K_pi^-1 Y_0' = L L' excites, u = L m, dm/dt = L' sigma. What
-/// e alone excites, as it does the estimate of viscous friction, which drifts, is left out.
+/// At rest at q, with the reference at the distance e, dq_r = Lambda e and sigma = Lambda e - Lambda δq - δv. The estimate moves
+/// along K_pi^-1 Y_0' with Y_0 = Y(q, 0, 0, 0). Its states are the at most N combinations that Y_0 K_pi^-1 Y_0' = L L' excites,
+/// u = L m, dm/dt = L' sigma. Combinations that only e excites are left out, such as the drifting estimate of viscous friction.
 impl<R: Regressor<N, P>, const N: usize, const P: usize> Linearise<R, N> for Adaptive<R::Real, N, P> {
     fn linearise(&self, model: &R, q: &SVector<R::Real, N>) -> Option<Feedback<R::Real, N>> {
         Some(self.about(model, q, &SVector::zeros()))
@@ -265,9 +265,9 @@ impl<T: RealField + Copy, const N: usize, const P: usize> Adaptive<T, N, P> {
     }
 }
 
-/// With the parameters of the plant the arm rests on its reference. Where some of the estimate cannot come there, what still moves makes up for
-/// it as far as it can: at rest L' sigma = 0, and the torque that is lacking has no component beside the columns of L but what
-/// F(Lambda e) + K_D Lambda e hold.
+/// With the parameters of the plant the arm rests on its reference. Where bounds or frozen parameters prevent this, the
+/// parameters that still move compensate as far as possible. At rest L' sigma = 0, and F(Lambda e) + K_D Lambda e supplies the
+/// missing torque outside the span of the columns of L.
 impl<P, R, const N: usize, const K: usize> LineariseAtRest<P, R, N> for Adaptive<R::Real, N, K>
 where
     P: Regressor<N, K>,
@@ -301,7 +301,7 @@ where
             torque - along(&law.excited(model, q), &torque)
         };
         Some(rest_off(reference, held, lack, |q| {
-            // What the estimate has taken over, in the direction in which it moves.
+            // The torque that the estimate supplies, in the direction in which it moves.
             let dual = dual(&law.excited(model, q));
             let by = column(&dual * (dual.transpose() * dynamic(&(lacking(q) - holding(q)))));
             let mut taken = law;
@@ -328,9 +328,9 @@ fn excited<T: RealField + Copy, const N: usize>(g: &SMatrix<T, N, N>) -> DMatrix
     DMatrix::from_fn(N, columns.len(), |i, j| columns[j][i])
 }
 
-/// y = J* (-K_P J δq - K_D J δv + K_I int) + (I - J* J)(-K_N δq - D_N δv), u = B y + F δv + dg/dq δq, with J* the inverse that the law has
-/// there, damped or not; the rows with an integral are states of the controller, dm/dt = -J δq. The posture of the null space counts as
-/// that of the linearisation.
+/// y = J* (-K_P J δq - K_D J δv + K_I int) + (I - J* J)(-K_N δq - D_N δv), u = B y + F δv + dg/dq δq. J* is the inverse of the
+/// law at this posture, damped or not. The rows with an integral are states of the controller, dm/dt = -J δq. The posture of the
+/// null space is taken to be the posture of the linearisation.
 impl<R: Dynamics<N>, const N: usize, const M: usize> Linearise<R, N> for OperationalSpace<R::Real, N, M> {
     fn linearise(&self, model: &R, q: &SVector<R::Real, N>) -> Option<Feedback<R::Real, N>> {
         let j = self.task.jacobian(&model.geometric_jacobian(q));
@@ -356,7 +356,7 @@ impl<R: Dynamics<N>, const N: usize, const M: usize> Linearise<R, N> for Operati
 }
 
 impl<T: RealField + Copy, const N: usize, const M: usize> OperationalSpace<T, N, M> {
-    /// J*, the inverse of the law at the Jacobian `j` of its rows: J+, or the damped one where damping is at work.
+    /// J*, the inverse of the law at the Jacobian `j` of its rows: J+, or the damped inverse where damping is active.
     fn inverse(&self, j: &SMatrix<T, M, N>) -> Option<SMatrix<T, N, M>> {
         let Some(damping) = &self.damping else { return Some(RightInverse::new(j)?.matrix()) };
         let mut inverse = SMatrix::<T, N, M>::zeros();
@@ -373,8 +373,9 @@ impl<T: RealField + Copy, const N: usize, const M: usize> OperationalSpace<T, N,
         self.null_space.map_or_else(SVector::zeros, |null_space| null_space.gains().0.component_mul(&(reference - q)))
     }
 
-    /// At rest at `q` under `reference`: J+ and the errors e of the rows, y_0 of the null space, and the a with J* (a - J y_0) + y_0 = y, as
-    /// far as rows of J can give y: a = (J J*)^-1 J (y - y_0) + J y_0. `None` where the posture is singular.
+    /// At rest at `q` under `reference`: J+, the errors e of the rows, y_0 of the null space, and a. The equation
+    /// J* (a - J y_0) + y_0 = y, as far as the rows of J can give y, has the solution a = (J J*)^-1 J (y - y_0) + J y_0.
+    /// `None` where the posture is singular.
     fn at_rest<R: Dynamics<N, Real = T>>(
         &self,
         model: &R,
@@ -399,9 +400,9 @@ struct AtRest<T, const N: usize, const M: usize> {
     a: SVector<T, M>,
 }
 
-/// At rest a = K_P e + K_I int, with e = 0 in rows with an integral and int = 0 in the others, has to give the acceleration
-/// y = B^-1 lack together with y_0: in the rows K_P e = a but where there is an integral, beside them (I - J+ J)(y_0 - y) = 0. Both, joined by
-/// J+ and times B, are the torque held and lacking. At a singular posture the arm is held only where the model lacks nothing.
+/// At rest a = K_P e + K_I int, with e = 0 in rows with an integral and int = 0 in the others. Together with y_0 it gives the
+/// acceleration y = B^-1 lack. So K_P e = a in rows without an integral, and (I - J+ J)(y_0 - y) = 0 in the null space. J+ joins
+/// both, and B makes them the torques held and lacking. At a singular posture the arm is held only if the model lacks no torque.
 impl<P, R, const N: usize, const M: usize> LineariseAtRest<P, R, N> for OperationalSpace<R::Real, N, M>
 where
     P: Dynamics<N>,
@@ -413,7 +414,7 @@ where
         if lack(plant, model, reference).amax() == nalgebra::zero() {
             return Some(Rest { q: *reference, is_held: true, feedback });
         }
-        // What is not a number is no posture.
+        // NaN marks a missing posture.
         let nowhere = SVector::repeat(nalgebra::zero::<R::Real>() / nalgebra::zero());
         let torque = |q: &SVector<R::Real, N>, y: SVector<R::Real, N>, held: bool| {
             let torque = self.at_rest(model, reference, q, &y).map(|rest| {

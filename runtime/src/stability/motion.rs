@@ -7,16 +7,16 @@
 //! x_{k+1} = A_k x_k,     A_k = d(q, dq, m)_{k+1} / d(q, dq, m)_k     at the reference of sample k, with m where the arm can rest
 //! ```
 //!
-//! the discrete linear time-varying loop. A_k is never formed: each deviation asks law and plant twice a sample, at the reference plus and
-//! minus a multiple of it; the plant starts each sample on the reference, under the torque that this asks and what the law answers to
-//! the deviation. Torque limits are not at work.
+//! the discrete linear time-varying loop. A_k is never formed. For each deviation law and plant are evaluated twice a sample, at
+//! the reference plus and minus a multiple of it. The plant starts each sample on the reference, under the reference torque plus
+//! the answer of the law to the deviation. Torque limits are not active.
 //!
 //! An estimate that is far from the truth is no small deviation: it changes the gain of the loop, and with it whether the sampling bears it.
 //! So the run itself is simulated, too, with its limits, from where it begins: without noise, one Runge-Kutta step a sample.
 //!
-//! What is proved: that the run, without noise, keeps to its reference or leaves it; and by how much the deviations that are carried along
-//! grow on this motion. A deviation that is not carried along may grow more at first; one that grows exponentially takes part in all of
-//! them and comes to the fore. What is not proved: anything of another motion, of a longer one, or of another load.
+//! The analysis proves whether the run, without noise, keeps to its reference, and how much the propagated deviations grow on
+//! this motion. Another deviation may grow more at first. Every propagated deviation has a component along an exponentially
+//! growing direction, which comes to dominate. The analysis proves nothing about another motion, a longer motion or another load.
 
 use super::{delay::Delay, error::StabilityError};
 use crate::{
@@ -29,16 +29,16 @@ use crate::{
 use nalgebra::{RealField, SVector};
 use std::collections::VecDeque;
 
-/// Sizes at which deviations count as one: those of an energy, so that what only oscillates does not seem to grow.
+/// Scales of deviations, from an energy, so that pure oscillations do not seem to grow.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Weights<T, const N: usize> {
     /// Stiffness of each joint, N m/rad or N/m.
     pub stiffness: SVector<T, N>,
-    /// Of each controller state, J per squared unit; zero for what does not move.
+    /// For each controller state, J per squared unit; zero for a state that does not move.
     pub controller_state: Vec<T>,
 }
 
-/// A controller whose state can be read and set: what the analysis of a motion asks of it.
+/// A controller whose state can be read and set, as the analysis of a motion needs.
 pub trait LineariseInMotion<P, R: Dynamics<N>, const N: usize>: Controller<R, N> + Clone {
     /// Weights of deviations about the posture `q`.
     fn weights(&self, model: &R, q: &SVector<R::Real, N>) -> Weights<R::Real, N>;
@@ -52,7 +52,7 @@ pub trait LineariseInMotion<P, R: Dynamics<N>, const N: usize>: Controller<R, N>
         Vec::new()
     }
 
-    /// The same with this controller state; what it has too few of stays as it is.
+    /// The same controller with this state; states beyond the end of the slice stay unchanged.
     #[must_use]
     fn with_controller_state(&self, _: &[R::Real]) -> Self {
         self.clone()
@@ -153,8 +153,8 @@ pub struct Growth<T> {
     pub at: T,
     /// The rate at which it goes on growing, 1/s: from the third to the last quarter.
     pub rate: T,
-    /// Whether it goes on without bound, as far as the motion can tell: a micrometre becomes a metre, or growth beyond a factor of 10 goes on
-    /// at a rate that counts over the motion.
+    /// Whether growth continues without bound, as far as the motion shows. Either a micrometre becomes a metre, or growth beyond
+    /// a factor of 10 continues at a rate that matters over the motion.
     pub unbounded: bool,
 }
 
@@ -172,7 +172,7 @@ pub struct ReferenceLost<T> {
 /// The loop in motion.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct MotionReport<T> {
-    /// Of small deviations along the reference, as far as the run is not lost.
+    /// Growth of small deviations along the reference, until the run is lost.
     pub growth: Growth<T>,
     /// Where the run itself is lost; `None` where it keeps to its reference to the end.
     pub lost: Option<ReferenceLost<T>>,
@@ -191,7 +191,7 @@ const LOST_ERROR: f64 = 1.0;
 const LOST_GROWTH: f64 = 1e6;
 /// Transient growth below this factor is not called unbounded: a stable loop can reach it.
 const TRANSIENT_GROWTH: f64 = 10.0;
-/// What the rate adds up to over the motion, at least, where growth counts as going on: a factor of e.
+/// Least rate times duration at which growth counts as continuing: a factor of e over the motion.
 const LASTING_GROWTH: f64 = 1.0;
 /// Part of a controller state's deviation that counts for the length of a difference.
 const CONTROLLER_STATE: f64 = 1e-6;
@@ -203,7 +203,7 @@ const TINY: f64 = 1e-30;
 pub struct MotionAnalysis<'a, P, T, const N: usize> {
     /// The arm as it is.
     pub plant: &'a P,
-    /// What is desired at each sample.
+    /// Reference at each sample.
     pub joints: &'a [JointReference<T, N>],
     /// Where the arm begins.
     pub start: State<T, N>,
@@ -213,13 +213,13 @@ pub struct MotionAnalysis<'a, P, T, const N: usize> {
     pub delay: Delay,
 }
 
-/// What a law answers: torque, and the controller state of the next sample.
+/// Answer of a law: torque, and the controller state of the next sample.
 type Answer<T, const N: usize> = (SVector<T, N>, Vec<T>);
 
 /// The law of sample k as a function of measurement and controller state; `None` where it refuses.
 type AnyLaw<'l, T, const N: usize> = dyn Fn(usize, &State<T, N>, &[T]) -> Option<Answer<T, N>> + 'l;
 
-/// A deviation of state and controller state; those of the states that are still to be measured, the oldest first.
+/// A deviation of state and controller state, with the deviations of the states still to be measured, oldest first.
 #[derive(Clone, Debug)]
 struct Deviation<T, const N: usize> {
     state: State<T, N>,
@@ -232,12 +232,12 @@ where
     T: RealField + Copy,
     P: Dynamics<N, Real = T>,
 {
-    /// How the motion goes under `controller`, which knows the arm as `model`; `references` are those of its kind, one a sample.
+    /// Analyses the motion under `controller`, which uses `model` of the arm; `references` are the controller's own, one a sample.
     ///
     /// # Errors
     /// [`StabilityError::NoSample`] without a sample, [`StabilityError::Period`] where the period is not positive and finite,
-    /// [`StabilityError::NoReference`] where there are fewer references than joints' samples,
-    /// [`StabilityError::SingularAtSample`] with the number of the sample at which the law is singular on the reference.
+    /// [`StabilityError::NoReference`] where `references` has fewer samples than `joints`, [`StabilityError::SingularAtSample`]
+    /// with the number of the sample at which the law is singular on the reference.
     pub fn of<R, C>(&self, model: &R, controller: &C, references: &[C::Reference]) -> Result<MotionReport<T>, StabilityError>
     where
         R: Dynamics<N, Real = T>,

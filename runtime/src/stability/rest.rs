@@ -1,14 +1,14 @@
 //! Where the arm rests under a law without an integral.
 //!
-//! Such a law holds a model that is wrong by its error alone: it rests at q with e = q_d - q where
+//! Only the error of such a law compensates a wrong model: the arm rests at q with e = q_d - q where
 //!
 //! ```text
 //! u(q_d; q) - u(q; q) = λ (g(q) + F(0) - u(q; q))    at λ = 1
 //! ```
 //!
-//! u(q_d; q) is the torque at rest at q under the reference q_d, so u(q; q) what the model takes for gravity and the offset F(0) of friction. At λ = 0 the arm rests on its
-//! reference; from there the posture is followed to λ = 1 by Newton's method, in steps as short as the way asks for. The loop is
-//! linearised where this ends: with small gains that may be far from the reference, and a load seen there is another one.
+//! u(q_d; q) is the torque at rest at q under the reference q_d. So u(q; q) is the model's gravity and offset F(0) of friction.
+//! At λ = 0 the arm rests on its reference. From there Newton's method follows the posture to λ = 1, with adaptive steps. The
+//! loop is linearised at the end. With small gains this may be far from the reference, where the load acts differently.
 
 use super::difference::derivative;
 use crate::linalg::lit;

@@ -32,10 +32,10 @@ pub struct Report<T> {
     pub posture: usize,
     /// Up to which sampling period the loop is stable at all postures.
     pub period: StablePeriod<T>,
-    /// How far from its reference the arm rests, at most over all postures and joints, rad or m: by the error of rows or joints without an
-    /// integral, and through the null space. Coulomb friction is not in it.
+    /// Largest distance of the arm at rest from its reference over all postures and joints, rad or m. Rows or joints without an
+    /// integral and the null space cause it. Coulomb friction is not included.
     pub offset: T,
-    /// Index of the first posture near which the arm cannot rest: the gains do not hold what the model leaves out.
+    /// Index of the first posture near which the arm cannot rest: the gains cannot hold the torque that the model leaves out.
     pub without_rest: Option<usize>,
     /// The loop in motion, where it was asked for.
     pub motion: Option<MotionReport<T>>,
@@ -69,8 +69,8 @@ pub struct SampledLoop<T, const N: usize> {
 const TRIALS: usize = 30;
 
 impl<T: RealField + Copy, const N: usize> SampledLoop<T, N> {
-    /// `plant`, the arm as it is, under `controller`, which knows it as `model`, about rest under the reference `q`: with the states of
-    /// the controller where the arm can rest, and off the reference where the law has none.
+    /// The loop of `plant`, the true arm, and `controller`, which uses `model`, linearised about rest under the reference `q`.
+    /// The controller has the states with which the arm can rest; without states, the arm rests off the reference.
     ///
     /// # Errors
     /// [`StabilityError::Singular`] or [`StabilityError::Inertia`], for posture 0.
@@ -85,8 +85,8 @@ impl<T: RealField + Copy, const N: usize> SampledLoop<T, N> {
         Ok(Self { offset, ..Self::with_feedback(plant, rest.feedback, &rest.q)? })
     }
 
-    /// The same about the states that the controller has at present, from which the arm may set out: what the loop does until its
-    /// estimates have moved. This is no verdict, since the arm cannot rest there.
+    /// The same about the present states of the controller, for instance at the start: the loop until its estimates have moved.
+    /// It decides nothing about stability, since the arm cannot rest there.
     ///
     /// # Errors
     /// Those of [`SampledLoop::new`].
@@ -192,7 +192,7 @@ impl<T: RealField + Copy, const N: usize> SampledLoop<T, N> {
     /// Those of [`SampledLoop::spectral_radius`].
     pub fn largest_stable_period(&self, period: T, delay: Delay) -> Result<StablePeriod<T>, StabilityError> {
         let stable = |t: T| Ok::<_, StabilityError>(self.spectral_radius(t, delay)? < T::one());
-        // Steps of a tenth: finer than any window of stability that one would want to stand in.
+        // Steps of a tenth are finer than any window of stability worth using.
         let up = lit::<T>(1.1);
         let (mut low, mut high) = (period, period);
         if stable(period)? {

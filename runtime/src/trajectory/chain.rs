@@ -1,4 +1,4 @@
-//! When each segment of a trajectory starts and ends, and which are at work.
+//! When each segment of a trajectory starts and ends, and which are active.
 
 use super::PlanFault;
 use core::time::Duration;
@@ -29,7 +29,7 @@ pub(crate) fn span(earlier: Duration, later: Duration) -> Option<Duration> {
 
 /// The slot of the next segment, after `earlier` and, before it, `before_earlier`.
 ///
-/// Only neighbours may overlap, so that never more than two segments are at work.
+/// Only neighbours may overlap, so that never more than two segments are active.
 pub(crate) fn next_slot(
     earlier: Option<Slot>,
     before_earlier: Option<Slot>,

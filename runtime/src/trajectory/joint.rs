@@ -42,7 +42,7 @@ impl<T: RealField + Copy, const N: usize> JointSegment<T, N> {
         }
     }
 
-    /// To `to`, rad or m, under a law; its length, velocity and acceleration are those of the joint that moves farthest.
+    /// To `to`, rad or m, under a law; its length, velocity and acceleration apply to the joint that moves farthest.
     pub fn to(to: [T; N], law: TimeLaw<T>) -> Self {
         Self::with(to.into(), Pace::Law(law))
     }

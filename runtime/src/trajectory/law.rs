@@ -9,9 +9,9 @@
 //!   = 1 - 1/2 (T - t)^2 / (t_c (T - t_c))    T - t_c <= t < T           (the book, Sect. 4.2.1, eq. 4.8)
 //! ```
 //!
-//! Given T and a, t_c = T/2 - sqrt(T^2/4 - L/a) (eq. 4.6), here (L/a) / (T/2 + sqrt(T^2/4 - L/a)), in which nothing cancels; given T and
-//! v, t_c = T - L/v (eq. 4.10). Given limits of v and a, the shortest trapezoid has t_c = v/a and T = L/v + t_c, and where L < v^2/a it
-//! is a triangle, t_c = sqrt(L/a), T = 2 t_c.
+//! Given T and a, t_c = T/2 - sqrt(T^2/4 - L/a) (eq. 4.6), here (L/a) / (T/2 + sqrt(T^2/4 - L/a)), without cancellation. Given T
+//! and v, t_c = T - L/v (eq. 4.10). Given limits of v and a, the shortest trapezoid has t_c = v/a and T = L/v + t_c. Where L <
+//! v^2/a it is a triangle, t_c = sqrt(L/a), T = 2 t_c.
 //!
 //! Polynomials are taken from the nearer end, with y = 1 - x: s = 1 - y^2 (3 - 2 y) and 1 - y^3 (10 - 15 y + 6 y^2) beyond the middle.
 
@@ -104,7 +104,7 @@ impl<T: RealField + Copy> TimeLaw<T> {
     /// Where the length is zero nothing moves for the duration asked for, whatever the law, and for no time where limits are given.
     ///
     /// # Errors
-    /// Where a number is not finite (a limit of velocity may be infinite), or no such law exists; the fault says why.
+    /// Where a number is not finite (a limit of velocity may be infinite), or no such law exists; the fault gives the reason.
     pub fn resolve(&self, length: T) -> Result<Profile<T>, PlanFault> {
         if !length.is_finite() {
             return Err(PlanFault::NotFinite);
@@ -373,7 +373,7 @@ mod tests {
     fn a_short_acceleration_time_has_all_its_digits() {
         let law = TimeLaw::TrapezoidalByAcceleration { duration: Duration::from_secs(60), acceleration: 100.0 };
         for (length, nanoseconds) in [(0.01f32, 1667), (0.001, 167)] {
-            // t_c = L / (a T) but for a part of t_c / T.
+            // t_c = L / (a T), except for a fraction t_c / T.
             let Shape::Trapezoid { rise_time, .. } = law.resolve(length).unwrap().shape else { panic!() };
             assert_eq!(rise_time, Duration::from_nanos(nanoseconds));
         }

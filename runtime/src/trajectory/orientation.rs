@@ -1,7 +1,7 @@
 //! Orientation profiles: turns about axes fixed in the base frame, one after another.
 //!
-//! Turn k leads from R_k by R(t) = Rot(r_k, theta_k s(t)) R_k, so omega = theta_k ds r_k and its derivative theta_k dds r_k
-//! (the book, Sect. 4.3.3, with the axis in the base frame).
+//! Turn k starts at R_k: R(t) = Rot(r_k, theta_k s(t)) R_k. So omega = theta_k ds r_k and its derivative theta_k dds r_k (the
+//! book, Sect. 4.3.3, with the axis in the base frame).
 
 use super::{
     chain::{last_started, next_slot, span, Slot},
@@ -23,7 +23,7 @@ pub struct Turn<T> {
     slot: Slot,
     profile: Profile<T>,
     from: Matrix3<T>,
-    /// Of unit length.
+    /// Unit vector.
     axis: Vector3<T>,
     angle: T,
 }

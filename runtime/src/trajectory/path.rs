@@ -1,8 +1,8 @@
 //! Paths in space: lines and arcs, one after another.
 //!
-//! A line from p_i to p_f is p(s) = p_i + s (p_f - p_i) (the book, eq. 4.34). An arc about centre c and unit axis r, from p_i through
-//! the angle theta, is p(s) = c + u cos(theta s) + r x u sin(theta s) with u = p_i - c (eq. 4.36, in the base frame); positive angles
-//! turn right-handed about r.
+//! A line from p_i to p_f is p(s) = p_i + s (p_f - p_i) (the book, eq. 4.34). An arc about centre c and unit axis r starts at p_i
+//! and spans the angle theta. It is p(s) = c + u cos(theta s) + r x u sin(theta s) with u = p_i - c (eq. 4.36, in the base
+//! frame). Positive angles turn right-handed about r.
 
 use super::{
     chain::{last_started, next_slot, span, Slot},
@@ -216,8 +216,8 @@ impl<T: RealField + Copy> Arc<T> {
         Ok(Self { centre, u, w: axis.cross(&u), sweep })
     }
 
-    /// The circle through three points: with a = via - from, b = to - from and n = a x b its centre is
-    /// from + ((|a|^2 b - |b|^2 a) x n) / (2 |n|^2).
+    /// The circle through three points. With a = via - from, b = to - from and n = a x b its centre is from + ((|a|^2 b - |b|^2
+    /// a) x n) / (2 |n|^2).
     fn through(from: Vector3<T>, via: Vector3<T>, to: Vector3<T>) -> Result<Self, PlanFault> {
         if !(is_finite(&via) && is_finite(&to)) {
             return Err(PlanFault::NotFinite);

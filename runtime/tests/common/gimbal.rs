@@ -1,4 +1,4 @@
-//! Three axes through one point, z, y and x in turn, each with a rotor of 1 kg m² that is all there is of inertia.
+//! Three axes through one point, z, y and x in turn, each with a rotor of 1 kg m². There is no other inertia.
 
 use armgen_runtime::robot::{Dynamics, EquationsOfMotion, Kinematics};
 use nalgebra::{Matrix3, Matrix4, Rotation3, SMatrix, SVector, Vector3};

@@ -68,7 +68,7 @@ impl Dynamics<1> for Mass {
     }
 }
 
-/// The force in two halves, which one motion does not tell apart; all else is known.
+/// The force in two halves, which no motion can distinguish; the rest is known.
 impl Regressor<1, 2> for Mass {
     fn regressor(
         &self,

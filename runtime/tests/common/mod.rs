@@ -1,4 +1,4 @@
-//! What the tests share: a SCARA written by hand from its closed forms, and the path of a ghost cut out of a sheet.
+//! Shared by the tests: a SCARA written by hand from its closed forms, and the path that cuts a ghost out of a sheet.
 #![allow(dead_code, unreachable_pub)]
 
 pub mod ghost;

@@ -1,8 +1,8 @@
 //! A SCARA (RRPR) by hand: links of 0.5 m, closed forms with the parameters
 //! pi = [m_l1, m_l2, m_l3, I_l1, I_l2, I_l4, I_m1, I_m2, I_m3, I_m4, F_m1, F_m2, F_m3, F_m4].
 //!
-//! The closed forms follow from the DH table (a = .5 .5 0 0, alpha = 0 pi 0 0, d = 1 0 .5+q3 0, theta4 = q4 - pi/2), centres of mass
-//! half way along links 1 and 2, ratios k_r = 1, 1, 50, 20, each rotor riding on the link before it.
+//! The closed forms follow from the DH table (a = .5 .5 0 0, alpha = 0 pi 0 0, d = 1 0 .5+q3 0, theta4 = q4 - pi/2). The centres of mass of
+//! links 1 and 2 lie half way along them. The ratios are k_r = 1, 1, 50, 20, and each rotor is mounted on the link before it.
 
 use armgen_runtime::robot::{Dynamics, EquationsOfMotion, Kinematics, Regressor};
 use nalgebra::{convert, matrix, vector, Matrix4, RealField, SMatrix, SVector, Vector4};

@@ -1,5 +1,5 @@
-//! Generates the SCARA and the Panda in f32 with either source of sines, a call of each of their functions, and the inverse kinematics of the
-//! SCARA and the Puma.
+//! Generates the SCARA and the Panda in f32 with either source of sines, and a call of each of their functions. Also generates
+//! the inverse kinematics of the SCARA and the Puma.
 
 use armgen_codegen::build_script::{Robot, Scalar, Trig};
 use std::{env, fs, path::PathBuf};

@@ -1,5 +1,5 @@
-//! Generates every robot in both scalars and with each trigonometry that needs no `std`, some with functions for many states, with a call of
-//! each function, and links the C library, which starts the program.
+//! Generates every robot in both scalars and with each trigonometry that needs no `std`, with a call of each function; some
+//! robots also have functions for many states. Links the C library, which starts the program.
 
 use armgen_codegen::build_script::{Robot, Scalar, Trig};
 use std::{env, fs, path::PathBuf};
@@ -57,8 +57,8 @@ fn main() {
             }
         }
     }
-    // Of functions for many states each is the body for one state within the same loops: three robots show the loops, in both scalars, with both
-    // kinds of sines and with friction that grows with the load.
+    // Every function for many states is the body for one state within the same loops. Three robots cover the loops: both scalars,
+    // both kinds of sines, and friction that grows with the load.
     let many: [(&str, Scalar, Trig, usize); 3] = [
         ("../../../robots/scara.yaml", Scalar::F64, Trig::Libm, 4),
         ("../../robots/load_friction.yaml", Scalar::F64, Trig::Fast, 8),

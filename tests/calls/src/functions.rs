@@ -5,7 +5,7 @@ use syn::{visit::Visit, Attribute, ImplItem, Item, TraitItem, Visibility};
 
 /// Public functions of the crate with this `src/lib.rs`: a free one by its name, the rest as `Type::method` or `Trait::method`.
 ///
-/// A module behind a `cfg` is left out: it is not there without an operating system, or a test.
+/// A module under a `cfg` is left out: it only exists with an operating system, or in tests.
 ///
 /// # Panics
 /// Where a module is not a readable Rust file: a test cannot go on without it.

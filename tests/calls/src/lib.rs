@@ -1,7 +1,6 @@
 //! Writes a call of every function of an emitted module.
 //!
-//! The list is read off the module's text, so that a function that the generator learns to emit is called, measured and held against
-//! a budget without anybody adding it to a list.
+//! The list comes from the module's text, so a newly emitted function is called, measured and compared with a budget automatically.
 
 mod functions;
 mod many_states;
@@ -11,11 +10,11 @@ pub use many_states::calls_of_many_states;
 use quote::{quote, ToTokens};
 use syn::{FnArg, Item, ItemFn, Pat, Type, TypeArray, TypeReference, Visibility};
 
-/// Rust text to be included beside the emitted module `module`: the arguments, and `each_function`, which visits a call of every
+/// Rust text to be included next to the emitted module `module`: the arguments, and `each_function`, which visits a call of every
 /// public function by its name.
 ///
-/// A function is called through a pointer and both its arguments and its result are opaque to the optimiser: it is the one that the
-/// module holds, neither cut down to what a caller uses nor computed beforehand.
+/// A function is called through a pointer, and its arguments and its result are opaque to the optimiser. So the whole function of
+/// the module runs: neither specialised for its caller nor evaluated at compile time.
 pub fn calls(module: &str) -> String {
     let file = syn::parse_file(module).expect("an emitted module is a Rust file");
     let visits = public(&file.items).map(visit);
@@ -55,8 +54,8 @@ fn public(items: &[Item]) -> impl Iterator<Item = &ItemFn> {
     })
 }
 
-/// Rust text to be included beside `runtime`, the emitted implementation of the traits, and the text of [`calls`]: `each_method`, which calls
-/// every method of every trait for both robots.
+/// Rust text to be included next to `runtime`, the emitted implementation of the traits, and the text of [`calls`]:
+/// `each_method`, which calls every method of every trait for both robots.
 pub fn method_calls(runtime: &str) -> String {
     let file = syn::parse_file(runtime).expect("an emitted implementation is a Rust file");
     let calls = file.items.iter().filter_map(|item| match item {

@@ -5,8 +5,8 @@ use syn::{Fields, FnArg, Item, ItemFn, ItemMod, ItemStruct, Type};
 
 use crate::public;
 
-/// Rust text to be included beside the emitted module `module`: `each_function_of_many_states`, which calls every public function of `lanes`
-/// and `batch`. Arguments are zeros and results memory, of which the optimiser knows nothing; slices are longer than two blocks by one state.
+/// Rust text to be included next to the emitted module `module`: `each_function_of_many_states`, which calls every public function of `lanes`
+/// and `batch`. Arguments are zeros and results are memory, both opaque to the optimiser. Slices are longer than two blocks by one state.
 pub fn calls_of_many_states(module: &str) -> String {
     let file = syn::parse_file(module).expect("an emitted module is a Rust file");
     let (lanes, batch) = (items_of(&file.items, "lanes"), items_of(&file.items, "batch"));

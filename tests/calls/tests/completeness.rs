@@ -28,7 +28,7 @@ fn every_public_function_of_the_runtime_is_called() {
     let steps = fs::read_to_string(project("tests/bare/no_panic/src/runtime.rs")).expect("the calls are there");
     let called = steps + &method_calls(&generated().runtime);
     assert_eq!(missing(&called), BTreeSet::new(), "these are not called by tests/bare/no_panic/src/runtime.rs");
-    // The check sees what it is to see: one of each kind, forgotten.
+    // The check detects an omission of each kind.
     for name in ["manipulability", "left_singular", "NullSpace::new", "Dynamics::gravity", "Path::check_reach", "Clik::approach"]
     {
         let forgotten = called.replace(&format!("{name}("), "drop(");

@@ -1,6 +1,6 @@
-//! Verdicts of the sampled loop, at rest and in motion, beside what the simulated arm does in three times the time: gains times 1/3, 1 and 3,
-//! a period with its half and its double (or others where these say nothing), loads of 0 and 10 kg that the model does not know, on a SCARA, a UR10
-//! and a Puma 560.
+//! Compares verdicts of the sampled loop, at rest and in motion, with the simulated arm over three times the duration. Gains are
+//! multiplied by 1/3, 1 and 3. Each period is joined by its half and its double, or by others where these decide nothing. Loads
+//! of 0 and 10 kg are unknown to the model. The arms are a SCARA, a UR10 and a Puma 560.
 //!
 //! `cargo run --release -p armgen-experiment-tests --example verdicts`
 
@@ -27,13 +27,13 @@ const LOST: f64 = 1.0;
 /// The time that is analysed, s; three times as much is simulated.
 const SECONDS: f64 = 4.0;
 
-/// What is said, and what comes out.
+/// Prediction and outcome.
 struct Found {
     /// The spectral radius at rest.
     rest: f64,
-    /// Whether it is said to be stable at rest.
+    /// Whether the loop is predicted to be stable at rest.
     stable: bool,
-    /// Whether it is said to diverge in motion.
+    /// Whether the loop is predicted to diverge in motion.
     grows: bool,
     /// Whether the simulated run is lost.
     lost: bool,
@@ -59,7 +59,7 @@ impl<const N: usize> Swing<N> {
     }
 }
 
-/// Whether the loop holds, as it is said and as it is.
+/// Whether the loop is stable, as predicted and as simulated.
 fn judge<P, R, C, const N: usize>(plant: &P, model: &R, controller: C, swing: &Swing<N>, period: f64) -> Found
 where
     P: Dynamics<N, Real = f64>,

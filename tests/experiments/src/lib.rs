@@ -1,6 +1,6 @@
 //! The runs of experiments, compiled for `robots/scara.yaml`: the robot that the experiments of the repository are written for.
 //!
-//! The tests of this crate run on it, and say the same whatever robot.yaml describes.
+//! The tests of this crate run on it, so their results do not depend on robot.yaml.
 
 use armgen_experiments::run::Arm;
 

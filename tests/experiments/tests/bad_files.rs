@@ -1,7 +1,7 @@
 //! Every kind of fault of experiments has a file that gets it, and what its reader sees is a snapshot.
 //!
-//! A file in `tests/bad/experiments` is named for the code that it must get, perhaps with a word more: `missing-key-law.yaml`. The faulty
-//! paths that they name stand in `paths` beside them.
+//! The name of a file in `tests/bad/experiments` is the code of its diagnostic, perhaps with a further word:
+//! `missing-key-law.yaml`. The folder `paths` holds the faulty paths that these files name.
 
 use crate::common;
 

@@ -1,4 +1,4 @@
-//! Every experiment of the repository gives what is expected, on the robot that it is written for.
+//! Every experiment of the repository gives its expected results, on the robot that it is written for.
 
 use crate::common;
 
@@ -53,7 +53,7 @@ fn every_experiment_gives_what_is_expected() {
     assert_eq!(lines, EXPECTATIONS);
 }
 
-/// An end that no number which is expected tells of is a failure, whatever else is expected.
+/// An early end that no expected number reports is a failure, whatever else is expected.
 #[test]
 fn a_run_that_ends_for_another_reason_is_not_as_expected() {
     let arm = armgen_experiment_tests::scara();
@@ -88,7 +88,7 @@ fn a_run_that_ends_for_another_reason_is_not_as_expected() {
     assert!(found.ends_with("the posture to start from does not reach the start of the path"), "{found}");
 }
 
-/// What lies behind the end of a run is not looked at, however long it is and however short the period.
+/// The path beyond the end of a run costs nothing, however long it is and however short the period.
 #[test]
 fn a_via_point_behind_the_end_of_the_run_is_not_met() {
     let arm = armgen_experiment_tests::scara();
@@ -107,7 +107,7 @@ fn a_via_point_behind_the_end_of_the_run_is_not_met() {
     assert!((via(20.0) - 2.0f64.sqrt() * 0.15625).abs() < 1e-12, "{}", via(20.0));
 }
 
-/// What ends a branch is said before anything moves.
+/// The end of a branch is reported before the run starts.
 #[test]
 fn where_a_branch_ends_is_said_before_anything_moves() {
     let arm = armgen_experiment_tests::scara();
@@ -140,7 +140,7 @@ fn the_reported_adaptive_gains_are_called_unstable_before_anything_moves() {
     );
 }
 
-/// `damping` and `threshold` mean what the page says: above the threshold the law is the inverse, below it errors stay.
+/// `damping` and `threshold` work as documented: above the threshold the law is the inverse, below it errors remain.
 #[test]
 fn damping_begins_below_the_threshold() {
     let arm = armgen_experiment_tests::scara();
@@ -175,7 +175,7 @@ fn what_is_not_as_expected_is_outside() {
     assert_eq!((lines.len(), met), (33, 32));
 }
 
-/// A law gives its torque whatever it is, and every gain that it says that it needs is used.
+/// Every law gives a torque and uses every gain that it requires.
 #[test]
 fn every_law_moves_the_arm() {
     let arm = armgen_experiment_tests::scara();

@@ -1,4 +1,4 @@
-//! The experiments of the repository. One program for all tests of the crate: a file beside this one is a module here.
+//! The experiments of the repository. One program for all tests of the crate: the other files of this folder are its modules.
 
 mod bad_files;
 mod common;

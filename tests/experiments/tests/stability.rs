@@ -1,4 +1,4 @@
-//! Verdicts on a UR10, beside what the simulated arm does.
+//! Verdicts on a UR10, compared with the simulated arm.
 
 use crate::common;
 
@@ -30,7 +30,7 @@ fn a_start_from_another_estimate_is_no_alarm() {
         let mut job = Job::new(&experiment, &*arm);
         job.prepare();
         assert_eq!(job.warning(), None, "{period} s");
-        // It converges, as was said.
+        // It converges, as predicted.
         if period == "0.002" {
             job.run();
             for line in job.lines() {
@@ -89,7 +89,7 @@ fn what_diverges_in_motion_is_called_so() {
     }
 }
 
-/// What was meant otherwise is said before anything moves.
+/// Implausible settings are reported before the run starts.
 #[test]
 fn a_start_in_degrees_and_a_path_beyond_reach_are_seen() {
     let arm = armgen_experiment_tests::ur10_load();

@@ -8,7 +8,7 @@ use common::{experiment, folder, text_of};
 
 const START: &str = "start: [-1.3913099976180494, 2.0650786546949544, 0.4, 0.673768657076905]";
 
-/// `adaptive_a.yaml`, a moment of it, begun as this says.
+/// `adaptive_a.yaml`, shortened, with this start.
 fn text(start: &str) -> String {
     let text = text_of(&folder(), "adaptive_a.yaml");
     let (head, _) = text.split_once("expect:").expect("expectations");
@@ -17,7 +17,7 @@ fn text(start: &str) -> String {
     head + "expect:\n  - {quantity: eq_quill, peak: [0, 0.1], at_most: 0.1}\n"
 }
 
-/// The tip is where the path is, at once; of two postures that reach it, the one on the side that is asked for.
+/// The tip starts on the path. Two postures reach it; the run takes the one on the requested side.
 #[test]
 fn a_start_from_the_path_is_on_the_path() {
     let arm = armgen_experiment_tests::scara();
@@ -39,7 +39,7 @@ fn a_start_from_the_path_is_on_the_path() {
     assert!((above - 2.065).abs() < 1e-3 && (above + below).abs() < 1e-6, "{above} {below}");
 }
 
-/// The peaks that stand beside the limits are those of the log.
+/// The peaks reported with the limits match the log.
 #[test]
 fn peaks_are_the_largest_of_what_is_logged() {
     let arm = armgen_experiment_tests::scara();

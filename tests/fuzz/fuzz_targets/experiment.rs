@@ -1,4 +1,4 @@
-//! Any text as an experiment and as a path; what is valid and short is run.
+//! Reads any text as an experiment and as a path; runs valid short experiments.
 #![no_main]
 
 use armgen_codegen::source::Source;

@@ -1,6 +1,6 @@
 //! Any text in the place of any part of an emitted module, given to the checker as that module.
 //!
-//! The first four bytes choose the part, the others replace it: what the checker sees is a module in all but one place.
+//! The first four bytes choose a part of a module, the others replace it: the checker sees a module that is changed in one place.
 #![no_main]
 
 use std::sync::OnceLock;
@@ -46,7 +46,7 @@ fuzz_target!(|data: &[u8]| {
     let changed = format!("{before}{}{after}", String::from_utf8_lossy(text));
     let effort = Effort { points: 1, exact_points: 1, ..Effort::default() };
     let report = armgen_verify::verify_with(source, &changed, claims.clone(), effort);
-    // What is not verified says why, in the text too.
+    // A module that is not verified comes with a reason, in the text too.
     assert_eq!(report.passed(), report.first_fault().is_none());
     assert_eq!(report.passed(), !report.to_string().ends_with("NOT verified"));
     let told = |word: &str| report.to_string().contains(word);

@@ -88,7 +88,7 @@ fuzz_target!(|data: &[u8]| {
             small => f64::from(small as i8) / 64.0,
         }
     };
-    // Turns by angles, so that a frame is one unless a number is none.
+    // Rotations by angles, so that a frame is valid unless a number is NaN or infinite.
     let mut frame = || {
         let ((s, c), (t, d)) = (number().sin_cos(), number().sin_cos());
         [[c, -s * d, s * t, number()], [s, c * d, -c * t, number()], [0.0, t, d, number()]]

@@ -1,10 +1,10 @@
-//! Any text as `robot.yaml`: check it, and generate from what is valid.
+//! Validates any text as `robot.yaml`, and generates from a valid one.
 #![no_main]
 
 use armgen_codegen::{kinds::Scalar, program::Trig, schedule::Options, source::Source, validate};
 use libfuzzer_sys::fuzz_target;
 
-/// Arms of more joints are checked but not generated from, for the sake of speed: what is emitted differs in length alone.
+/// For speed, arms with more joints are validated but not generated: their emitted text differs only in length.
 const JOINTS: usize = 3;
 
 fuzz_target!(|data: &[u8]| {

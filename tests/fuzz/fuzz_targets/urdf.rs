@@ -1,4 +1,4 @@
-//! Any text as a URDF: import it; what comes out is a description that reads without a fault.
+//! Imports any text as a URDF; a result must be a valid description.
 #![no_main]
 
 use libfuzzer_sys::fuzz_target;

@@ -7,8 +7,8 @@ use armgen_codegen::{
 };
 use armgen_import::{import, Options};
 
-/// Checks that what is said about a source can be shown: places inside the text, help that is not empty, a rendering that is there exactly
-/// if there is something to say.
+/// Checks that diagnostics can be shown: places lie inside the text, help is not empty, and a rendering exists exactly if there
+/// are diagnostics.
 ///
 /// # Panics
 /// If not.
@@ -24,7 +24,7 @@ pub fn check_diagnostics(source: &Source, diagnostics: &Diagnostics) {
     }
 }
 
-/// Imports a text, with every digit and with what the digits mean; what comes out is a description that reads without a fault.
+/// Imports a text, digit by digit and snapped to the meant values; a result must be a valid description.
 ///
 /// # Panics
 /// If not.

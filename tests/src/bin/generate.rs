@@ -1,5 +1,5 @@
-//! The generator as a program of its own, for the test that starts it again and again: prints the module and the trait implementation of
-//! the description in a file.
+//! The generator as a program, for a test that starts it repeatedly. Prints the module and the trait implementation of the
+//! description in a file.
 
 use armgen_codegen::diagnostic::Colour;
 use armgen_codegen::source::Source;

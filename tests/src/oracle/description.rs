@@ -1,6 +1,6 @@
 //! The description, read again: YAML into plain structs of texts, and those into numbers.
 //!
-//! Only what is valid is of interest here; a wrong file gets some error.
+//! Only valid files matter here; a wrong file gets any error.
 
 use std::collections::BTreeMap;
 use std::fmt;
@@ -30,7 +30,7 @@ pub struct Description {
     base: Option<PoseText>,
     tool: Option<PoseText>,
     payload: Option<BodyText>,
-    /// Rows of the task, as listed; none if the file does not say.
+    /// Rows of the task, as listed; empty by default.
     #[serde(default)]
     pub task: Vec<String>,
     regressor: Option<RegressorChoice>,
@@ -38,7 +38,7 @@ pub struct Description {
     _allow: Option<IgnoredAnyClone>,
 }
 
-/// What the file wants as regressor.
+/// The regressor that the file requests.
 #[derive(Clone, Debug, PartialEq, Deserialize)]
 #[serde(from = "RegressorText")]
 pub enum RegressorChoice {
@@ -97,7 +97,7 @@ struct JointText {
     armature: Option<Text>,
 }
 
-/// Whatever stands there.
+/// Any value.
 #[derive(Clone, Debug, Deserialize)]
 #[serde(from = "IgnoredAny")]
 struct IgnoredAnyClone;
@@ -261,7 +261,7 @@ impl Numbers {
         Ok(Some([self.one(x)?, self.one(y)?, self.one(z)?]))
     }
 
-    /// The rotation that stands in a pose.
+    /// The rotation of a pose.
     fn rotation(&self, pose: &OnePose) -> Result<Rotation, String> {
         if let Some(rpy) = self.three(&pose.rpy)? {
             return Ok(roll_pitch_yaw(rpy));
@@ -304,7 +304,7 @@ impl Numbers {
         Ok((r, p))
     }
 
-    /// Bodies that are one, about the origin of the first one's frame.
+    /// Rigidly joined bodies, about the origin of the first body's frame.
     fn lumped(&self, body: &BodyText) -> Result<Ten, String> {
         let mut sum = self.ten(&body.mass, &body.com, &body.inertia, (STILL, [0.0; 3]))?;
         for other in &body.attached {
@@ -341,7 +341,7 @@ impl Numbers {
 }
 
 impl Description {
-    /// Rows of the geometric Jacobian that make up the task: all six if the file does not say.
+    /// Rows of the geometric Jacobian that make up the task: all six by default.
     pub fn task_rows(&self) -> Vec<usize> {
         const ROWS: [&str; 6] = ["x", "y", "z", "rx", "ry", "rz"];
         let listed = self.task.iter().filter_map(|name| ROWS.iter().position(|row| row == name));
@@ -357,7 +357,7 @@ impl Description {
         serde_yaml::from_str(text).map_err(|error| error.to_string())
     }
 
-    /// What the file wants as regressor; `standard` if it does not say.
+    /// The regressor that the file requests; `standard` by default.
     pub fn regressor_choice(&self) -> RegressorChoice {
         self.regressor.clone().unwrap_or(RegressorChoice::Standard)
     }

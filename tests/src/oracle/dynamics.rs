@@ -1,15 +1,15 @@
 //! Recursive Newton-Euler with rotors (the book, Sect. 7.5), and what follows from it.
 //!
-//! Outwards the link frames' angular velocity w, angular acceleration dw and linear acceleration a of the origin, less gravity; for
-//! every body, fixed in a frame with origin acceleration a, the force and the moment about that origin:
+//! The outward recursion gives each link frame's angular velocity w, angular acceleration dw, and linear acceleration a of the origin minus
+//! gravity. Each body, fixed in a frame whose origin accelerates with a, needs the force and the moment about that origin:
 //!
 //! ```text
 //! F = m a + dw x mc + w x (w x mc)        N = I dw + w x (I w) + mc x a
 //! ```
 //!
-//! A rotor with inertia I_m about its axis z alone, riding on a link and spinning with k_r dq on top, has the angular momentum
-//! I_m (z·w + k_r dq) z, so the link must deliver the moment I_m (z·dw + k_r ddq) z + I_m (z·w + k_r dq) w x z, and the joint
-//! k_r I_m (z·dw + k_r ddq). Inwards the forces and moments are summed and projected on the joint axes.
+//! A rotor has only the inertia I_m about its axis z, is mounted on a link and spins with k_r dq relative to it. Its angular
+//! momentum is I_m (z·w + k_r dq) z. So the link must deliver the moment I_m (z·dw + k_r ddq) z + I_m (z·w + k_r dq) w x z, and
+//! the joint k_r I_m (z·dw + k_r ddq). The inward recursion sums the forces and moments and projects them on the joint axes.
 
 use super::kinematics::Posture;
 use super::vector::{add, constant, cross, dot, scale, sub, Frame, Vector};
@@ -39,7 +39,7 @@ struct Motion<S> {
 }
 
 impl<S: Scalar> Motion<S> {
-    /// Of a point of the same body, r away.
+    /// Motion of a point of the same body at the distance r.
     fn at(self, r: Vector<S>) -> Self {
         let v = cross(self.w, r);
         Motion { v: add(self.v, v), a: add(self.a, add(cross(self.dw, r), cross(self.w, v))), ..self }
@@ -193,7 +193,7 @@ impl Model {
         self.with_springs(q, self.newton_euler(q, &rest, &rest, self.gravity))
     }
 
-    /// Torques with those of springs, k (q - rest).
+    /// Torques plus the spring torques k (q - rest).
     pub fn with_springs<S: Scalar>(&self, q: &[S], torques: Vec<S>) -> Vec<S> {
         let spring = |(joint, &q): (&super::Joint, &S)| S::from(joint.stiffness.unwrap_or(0.0)) * (q - S::from(joint.rest));
         torques.into_iter().zip(self.joints.iter().zip(q).map(spring)).map(|(torque, spring)| torque + spring).collect()
@@ -373,7 +373,7 @@ pub fn solve(m: &[Vec<f64>], right: &[f64]) -> Option<Vec<f64>> {
 
 /// Numerical rank of a matrix: columns scaled to length one, then Gram-Schmidt with pivoting, up to `precision::RANK`.
 ///
-/// A column shorter than that part of the longest one is rounding (of a sine of pi, say) and counts as zero.
+/// A column below this fraction of the longest column is rounding, for instance of a sine of pi, and counts as zero.
 pub fn rank(rows: &[Vec<f64>]) -> usize {
     let width = rows.first().map_or(0, Vec::len);
     let length = |v: &[f64]| v.iter().map(|x| x * x).sum::<f64>().sqrt();

@@ -5,8 +5,8 @@ use super::{times, Dual, Matrix, Model};
 use crate::functions::Arguments;
 
 impl Model {
-    /// What a function, plain or `_with` the parameters of this model, must return: row by row, the parts of its result one after the
-    /// other. `None` for functions that are judged in other ways, as regressors and what divides by B are.
+    /// Expected result of a function, plain or `_with` the parameters of this model: row by row, one part after the other. `None`
+    /// for functions that are judged in other ways, such as regressors and functions that divide by B.
     pub fn value(&self, function: &str, a: &Arguments) -> Option<Vec<f64>> {
         let Arguments { q, dq, ddq, .. } = a;
         Some(match function.trim_end_matches("_with") {
@@ -54,7 +54,7 @@ impl Model {
         rows
     }
 
-    /// Σ m p / Σ m, the sum on top by the potential energy in a free fall of 1 along each axis in turn.
+    /// Σ m p / Σ m; the numerator is the potential energy under a free fall of 1 along each axis in turn.
     fn center_of_mass(&self, q: &[f64]) -> Vec<f64> {
         let motors = self.joints.iter().filter_map(|joint| joint.motor.as_ref()).map(|motor| motor.mass);
         let mass: f64 = self.joints.iter().map(|joint| joint.link[0]).chain(motors).chain(self.payload.map(|load| load[0])).sum();

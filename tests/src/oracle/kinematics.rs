@@ -1,20 +1,20 @@
 //! Frames and Jacobians.
 //!
-//! The axis of joint i is z of frame i-1 in standard rows, z of frame i in modified ones, and what the row says in others. Column i of the
-//! geometric Jacobian of a point p is (z x (p - o); z) for a revolute joint with a point o of its axis, (z; 0) for a prismatic one (the
-//! book, Sect. 3.1.3).
+//! The axis of joint i is z of frame i-1 in standard rows and z of frame i in modified rows; other rows give it. Column i of the
+//! geometric Jacobian of a point p is (z x (p - o); z) for a revolute joint with a point o of its axis, (z; 0) for a prismatic
+//! one (the book, Sect. 3.1.3).
 
 use super::vector::{add, constant, cross, scale, sub, Frame, Vector};
 use super::{Dual, Matrix, Model, Placed, Scalar};
 
-/// Where an arm stands: link frames and joint axes in the base frame.
+/// Posture of an arm: link frames and joint axes in the base frame.
 pub(super) struct Posture<S> {
     /// Frames 0 (base) to n.
     pub(super) frames: Vec<Frame<S>>,
     /// End-effector frame.
     pub(super) end: Frame<S>,
-    /// Of each joint: direction of its axis and a point on it, both fixed in the previous link as well (the point of a prismatic
-    /// joint is the previous frame's origin).
+    /// For each joint, direction of its axis and a point on it, both also fixed in the previous link. The point of a prismatic
+    /// joint is the previous frame's origin.
     pub(super) axes: Vec<(Vector<S>, Vector<S>)>,
 }
 
@@ -29,7 +29,7 @@ impl<S: Scalar> Posture<S> {
             let [a, alpha, d, theta] = joint.row.map(S::from);
             let (d, theta) = if joint.prismatic { (d + q, theta) } else { (d, theta + q) };
             let previous = *frames.last().expect("the base is there");
-            // The rotor of joint 1 rides on the base itself, the row starts from the frame that the file gives.
+            // The rotor of joint 1 is mounted on the base itself; the row starts from the frame that the file gives.
             let previous = if frames.len() == 1 { previous.then(&placed(model.base)) } else { previous };
             if let Some((origin, axis)) = joint.origin {
                 let still = previous.then(&placed(origin));

@@ -9,7 +9,7 @@ pub struct Regressor {
     pub y: Matrix,
     /// Nominal parameters, p.
     pub parameters: Vec<f64>,
-    /// What is not in pi.
+    /// Torque of all terms that are not in pi.
     pub known: Vec<f64>,
 }
 
@@ -52,8 +52,8 @@ impl Regressor {
 }
 
 impl Model {
-    /// The places of the standard parameters: ten per link, then of each joint what is given of rotor inertia, rotor and joint
-    /// viscous friction, Coulomb friction, offset, cubic and Stribeck friction, stiffness of a spring, then the payload's ten.
+    /// The places of the standard parameters. Each link has ten. Each joint follows with the given ones of rotor inertia, rotor and joint
+    /// viscous friction, Coulomb friction, offset, cubic and Stribeck friction, and spring stiffness. The payload's ten come last.
     fn standard_places(&mut self) -> Vec<&mut f64> {
         let (mut links, mut drives) = (Vec::new(), Vec::new());
         for joint in &mut self.joints {

@@ -50,7 +50,7 @@ fn exact(formula: &Formula, names: &Names) -> Result<Exact, String> {
     })
 }
 
-/// The rational number that a decimal says.
+/// The rational number of a decimal.
 fn decimal(digits: &str) -> Result<BigRational, String> {
     let (mantissa, exponent) = digits.split_once(['e', 'E']).unwrap_or((digits, "0"));
     let (whole, fraction) = mantissa.split_once('.').unwrap_or((mantissa, ""));
@@ -131,7 +131,7 @@ fn root(x: &Exact) -> Result<Exact, String> {
 
 type Pair = (Exact, Exact);
 
-/// Sine and cosine of a + b from those of a and of b.
+/// Sine and cosine of a + b, by the addition theorem.
 fn sum((sa, ca): &Pair, (sb, cb): &Pair) -> Pair {
     (&(sa * cb) + &(ca * sb), &(ca * cb) - &(sa * sb))
 }

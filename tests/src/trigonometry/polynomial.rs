@@ -90,8 +90,8 @@ impl Polynomial {
         Polynomial { terms: self.terms.iter().map(|(m, c)| (m.clone(), c * factor)).collect() }
     }
 
-    /// (f, rest) with rest = f · self free of a constant factor, where the constant factor can be read off: a single term's
-    /// coefficient and roots, otherwise the first term's coefficient. `None` if there is nothing to do.
+    /// (f, rest) with rest = f · self free of its constant factor. The constant factor is the coefficient and roots of a single
+    /// term, otherwise the first term's coefficient. `None` if there is nothing to do.
     pub(super) fn constant_inverse(&self) -> Option<(Polynomial, Polynomial)> {
         let (monomial, coefficient) = self.terms.iter().next()?;
         let mut factor = Polynomial::constant(coefficient.recip());
@@ -157,7 +157,7 @@ impl Polynomial {
         }
     }
 
-    /// Adds coefficient · monomial, where roots and sines may stand to the second power.
+    /// Adds coefficient · monomial, where roots and sines may have the second power.
     fn add_product(&mut self, mut monomial: Monomial, mut coefficient: BigRational) {
         let mut squares = Vec::new();
         monomial.retain(|atom, power| match atom {

@@ -82,13 +82,13 @@ fn eight_postures() -> String {
     page((across as f64 * cell[0]) as u32, (down as f64 * cell[1]) as u32 + 10, &body)
 }
 
-/// The z axis of the frame before the next one: two points stand for each frame.
+/// The z axis of the frame before the next one: two points represent each frame.
 fn z_of(frames: &[[[f64; 4]; 4]; 6], points: usize) -> [f64; 3] {
     let frame = &frames[(points - 1) / 2 - 1];
     [frame[0][2], frame[1][2], frame[2][2]]
 }
 
-/// How many postures the UR5 has, the flange pointing ahead and down, over a vertical plane beside its base.
+/// How many postures the UR5 has, the flange pointing ahead and down, over a vertical plane next to its base.
 fn solution_count() -> String {
     const STEPS: usize = 120;
     let (left, top, size) = (70.0, 50.0, 480.0);

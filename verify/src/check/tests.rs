@@ -1,5 +1,5 @@
-//! Each check left out. A trick is refused by one check, without that one by the next, and without all of them it is accepted: so none of them
-//! can be lost without a difference here, and what they are for is seen.
+//! Omits each check in turn. One check refuses a trick; without it the next check does; without all of them the trick is accepted. So no
+//! check can disappear without a failing test, and the tests document the purpose of each.
 
 use std::cell::RefCell;
 use std::collections::BTreeSet;
@@ -27,17 +27,17 @@ pub(super) fn is_left_out(check: Check) -> bool {
     LEFT_OUT.with_borrow(|left_out| left_out.contains(&check))
 }
 
-/// What this thread leaves out.
+/// The checks that this thread omits.
 pub(super) fn left_out() -> Vec<Check> {
     LEFT_OUT.with_borrow(Vec::clone)
 }
 
-/// So does this thread from now on.
+/// Makes this thread omit these checks from now on.
 pub(super) fn leave_out(checks: &[Check]) {
     LEFT_OUT.set(checks.to_vec());
 }
 
-/// A module that is right, and what belongs to it.
+/// A correct module with its companions.
 struct Given {
     source: Source,
     module: String,
@@ -58,29 +58,29 @@ fn given(robot: &str, options: &Options) -> Given {
     Given { source, module: generated.module, claims, certificate: Certificate::of(&report) }
 }
 
-/// A check and why it refuses.
+/// A check and its reason for refusal.
 type Layer = (Check, &'static str);
 
-/// What becomes of a trick without the checks that refuse it.
+/// The outcome of a trick without the checks that refuse it.
 #[derive(Debug)]
 enum Last {
     Accepted,
-    /// There is no way to read it, or to run it.
+    /// It cannot be read or run.
     Refused(&'static str),
-    /// It would take too long to try.
+    /// Trying it would take too long.
     NotTried,
 }
 
-/// What the tricks have shown so far.
+/// The results of the tricks so far.
 #[derive(Default)]
 struct Tally {
     left_out: BTreeSet<Check>,
-    /// Tricks that went otherwise than they should.
+    /// Tricks with an unexpected outcome.
     wrong: Vec<String>,
 }
 
 impl Tally {
-    /// A trick is refused for the first reason, without the first check for the second one, and so on, at last as said.
+    /// The first check refuses a trick for the first reason, the second check without it for the second, and so on, until `last`.
     fn peel(&mut self, trick: &str, layers: &[Layer], last: Last, fault: impl Fn() -> Option<String>) {
         let fault = || {
             let caught = catch_unwind(AssertUnwindSafe(&fault));
@@ -107,12 +107,12 @@ impl Tally {
         }
     }
 
-    /// The same for a module that has another text in it, from a place on.
+    /// The same for a module with a replaced text after a given place.
     fn module(&mut self, given: &Given, from: &str, old: &str, new: &str, layers: &[Layer]) {
         self.text(given, new, &edited(&given.module, from, old, new), layers);
     }
 
-    /// A module that no check has to refuse: there is no way to read it.
+    /// A module that needs no check because the reader cannot read it.
     fn unreadable(&mut self, given: &Given, from: &str, old: &str, new: &str, why: &'static str) {
         let text = edited(&given.module, from, old, new);
         let fault = || verify_with(&given.source, &text, given.claims.clone(), Effort::default()).first_fault();
@@ -141,14 +141,14 @@ impl Tally {
     }
 }
 
-/// A module with a text replaced where it first stands behind another.
+/// A module with a text replaced at its first occurrence after another text.
 fn edited(module: &str, from: &str, old: &str, new: &str) -> String {
     let at = module.find(from).unwrap_or_else(|| panic!("{from} is not in the module"));
     assert!(module[at..].contains(old), "{old} is not in the module behind {from}");
     module[..at].to_string() + &module[at..].replacen(old, new, 1)
 }
 
-/// An item of a module with all that belongs to it.
+/// An item of a module with everything that belongs to it.
 fn item<'a>(module: &'a str, begins: &str) -> &'a str {
     let at = module.find(begins).unwrap_or_else(|| panic!("{begins} is not in the module"));
     let from = module[..at].rfind("\n\n").expect("a blank line") + 1;
@@ -178,7 +178,7 @@ fn no_check_can_be_left_out() {
     comments(&mut tally, &scara);
     certificates(&mut tally, &scara);
     crate::inverse_kinematics::tests::tricks(&mut |trick, layers, fault| tally.peel(trick, layers, Last::Accepted, fault));
-    // All of them: a new check asks for a trick of its own.
+    // Every check has a trick, so a new check requires a new trick.
     let text = include_str!("../check.rs");
     let body = text.split("enum Check {").nth(1).and_then(|rest| rest.split("\n}").next()).expect("the checks");
     for name in body.lines().filter_map(|line| line.trim().strip_suffix(',')) {
@@ -219,7 +219,7 @@ fn texts_and_items(tally: &mut Tally, scara: &Given) {
     appended(tally, part, &[(PartsNeeded, "`gravity_part_1` is needed by no function")]);
 }
 
-/// What leaves the grammar for want of an alternative.
+/// Texts outside the grammar.
 fn unreadable(tally: &mut Tally, scara: &Given) {
     let no_item = "begins no item of an emitted module";
     tally.unreadable(scara, "", NAMED, &format!("#[doc = include_str!(\"Cargo.toml\")]\n{NAMED}"), no_item);
@@ -273,7 +273,7 @@ fn bodies(tally: &mut Tally, scara: &Given) {
     tally.module(&fused, B, b11, "Real::mul_add(-10.0, c2, 21.526)", &other);
     let deep = format!("let t9 = {}c2{};", "Real::mul_add(2.0, ".repeat(17), ", 1.0)".repeat(17));
     line(tally, &deep, &[(Brackets, "brackets in more than 16 others"), cost]);
-    // That a product is rounded all the same is seen in the bound alone.
+    // Only the bound shows that the product is rounded anyway.
     let rounded = [cost, (Rounding, "the documentation says `Rounding error: ")];
     tally.module(&fused, B, b11, "10.0 * c2 + 21.526", &rounded);
     let dry = given("dry_friction", &Options::default());
@@ -284,7 +284,7 @@ fn bodies(tally: &mut Tally, scara: &Given) {
     tally.module(&dry, known, "stribeck(dq[1], 0.02)", "stribeck(dq[1], 0.03)", &fades);
 }
 
-/// What a compiler of C may do: take one array for two arguments, forget what stands behind 63 characters of a name.
+/// A C compiler may alias two arguments, and may ignore the characters of a name after the 63rd.
 fn bodies_in_c(tally: &mut Tally, scara: &Given) {
     let mut generated = armgen_codegen::generate(&scara.source, &Options::default()).0.expect("a valid robot");
     document_bounds(&scara.source, &mut generated).expect("bounds");
@@ -332,7 +332,7 @@ fn functions(tally: &mut Tally, scara: &Given) {
         identities("does not hold"),
     ];
     tally.module(scara, B, T1, &T1.replace("5.0", "-5.0"), &different);
-    // Of so high a degree that it may vanish at all points; that its base is 0 the bounds of degrees do not see.
+    // Its degree is so high that it may vanish at all points; the degree bounds do not see that its base is 0.
     let squares: String = (0..200).map(|k| format!("let t{} = t{1} * t{1}; ", 901 + k, 900 + k)).collect();
     let high = edited(module, B, T1, &format!("{T1}    let t900 = 0.25 * c2 - 0.25 * c2; {squares}\n"));
     let high = edited(&high, B, "t1, -0.25", "t1, t1100 - 0.25");
@@ -381,7 +381,7 @@ fn floats(tally: &mut Tally, scara: &Given) {
     forward(tally, &single, "t29 * 1e-25 * 1e-25 * 1e25 * 1e25", &[(States, "forward_dynamics: rounding can make an error of")]);
 }
 
-/// Signs of what is 0 over the reals, and of a torque in two forms.
+/// Signs of values that are 0 over the reals, and of a torque in two forms.
 fn signs(tally: &mut Tally) {
     let load = given("load_friction", &Options::default());
     let said = "the documentation says `Cost: ";
@@ -404,11 +404,11 @@ fn constants(tally: &mut Tally, scara: &Given) {
     base_parameters(tally, scara);
 }
 
-/// Names and exact values of base parameters are the module's choice, within limits.
+/// A module chooses names and exact values of base parameters within limits.
 fn base_parameters(tally: &mut Tally, scara: &Given) {
     let twice = [(Modular, "column `Fm1` is no combination of the torques of"), (BaseNames, "`Fm1` stands there twice")];
     tally.module(scara, "const BASE_PARAMETER_NAMES", "\"Fm2\"", "\"Fm1\"", &twice);
-    // Nearer to the literal than any float, and not the value.
+    // Closer to the literal than any float, but not the value.
     let off = |given: &Given, constant: &str, entry: usize| {
         let mut certificate = given.certificate.clone();
         let values = certificate.constants.iter_mut().find(|c| c.name == constant).expect("values");

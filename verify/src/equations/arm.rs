@@ -1,4 +1,4 @@
-//! The arm with its constants as exact numbers, parameters filled in.
+//! The arm with exact constants and parameter values.
 
 use armgen_description::exact::{Number, Polynomial};
 use armgen_description::kinds::JointKind;
@@ -9,7 +9,7 @@ use crate::arithmetic::Arithmetic;
 use crate::element::Element;
 use crate::formula::Formula;
 
-/// A frame in another.
+/// The pose of a frame in another.
 #[derive(Clone, Debug)]
 pub struct Frame<E> {
     /// Its axes as columns.
@@ -38,7 +38,7 @@ pub struct Motor<E> {
     pub inertia: E,
     /// Mass.
     pub mass: E,
-    /// Place in the parent's link frame.
+    /// Position in the parent's link frame.
     pub position: Vector<E>,
     /// Axis in the parent's link frame.
     pub axis: Vector<E>,
@@ -49,17 +49,17 @@ pub struct Motor<E> {
 /// A joint and the link it moves.
 #[derive(Clone, Debug)]
 pub struct Joint<E> {
-    /// Whether it turns.
+    /// Whether it is revolute.
     pub revolute: bool,
     /// The link that carries it.
     pub parent: Option<usize>,
-    /// What stands before the joint's motion, in the previous link's frame.
+    /// Fixed transform before the joint's motion, in the previous link's frame.
     pub before: Frame<E>,
     /// Unit vector of the joint axis in the frame after `before`.
     pub axis: Vector<E>,
-    /// What stands after the motion: the link frame in the frame that has moved.
+    /// Fixed transform after the motion: the link frame in the moved frame.
     pub after: Frame<E>,
-    /// The frame in which base parameters of the link are meant, in its link frame: the generator's choice.
+    /// The frame for base parameters of the link, relative to its link frame; the generator chooses it.
     pub chosen: Frame<E>,
     /// The link, in its link frame.
     pub link: Body<E>,
@@ -69,28 +69,28 @@ pub struct Joint<E> {
     pub viscous: E,
     /// Coulomb friction at the joint.
     pub coulomb: E,
-    /// Friction at the joint whatever its rate.
+    /// Constant torque, independent of the rate.
     pub offset: E,
     /// Coefficient of the cube of the rate.
     pub cubic: E,
-    /// How many times its gravity torque is added to its dry friction.
+    /// Ratio of load-dependent dry friction to the gravity torque.
     pub load: E,
-    /// Stribeck friction at the lowest rates.
+    /// Stribeck friction at zero rate.
     pub stribeck: E,
-    /// The rate at which 1/e of it is left; 1 where there is none.
+    /// The rate at which it has decayed to 1/e; 1 without Stribeck friction.
     pub stribeck_velocity: E,
     /// Stiffness of the joint's spring.
     pub stiffness: E,
-    /// The joint variable at which that is at rest.
+    /// The joint variable where the spring is at rest.
     pub rest: E,
-    /// Inertia that the joint alone feels.
+    /// Inertia that acts on this joint only.
     pub armature: E,
 }
 
 /// The arm.
 #[derive(Clone, Debug)]
 pub struct Arm<E> {
-    /// Base to tip; parents first.
+    /// Joints from base to tip; parents first.
     pub joints: Vec<Joint<E>>,
     /// Acceleration of gravity in the base frame.
     pub gravity: Vector<E>,
@@ -106,7 +106,7 @@ pub struct Arm<E> {
     pub one: E,
 }
 
-/// A number of the description as a formula: its text is all that is taken over.
+/// A number of the description as a formula; only its text is used.
 pub fn formula(number: &Number) -> Formula {
     Formula::parse(&number.to_string()).expect("the description prints its numbers as formulas")
 }
@@ -163,7 +163,7 @@ impl<K: Arithmetic> Builder<'_, K> {
         pose.elements.iter().try_fold(Frame::identity(&zero, &one), |all, element| Some(all.then(&self.frame(element)?)))
     }
 
-    /// Bodies as the file gives them, lumped: their ten parameters add where they are in one frame.
+    /// Combines the bodies of a link: their ten parameters add in a common frame.
     fn lumped(&self, parts: &[manipulator::PlacedBody]) -> Option<Body<K::Element>> {
         let zero = self.arithmetic.integer(0);
         let mut all: Option<Body<K::Element>> = None;
@@ -229,8 +229,8 @@ impl<K: Arithmetic> Builder<'_, K> {
     }
 }
 
-/// Two bodies in one frame as one (Steiner): about the common centre of mass c each adds m (d'd 1 - d d'), d from c to its own. `None` where
-/// masses that are not 0 add up to 0.
+/// Combines two bodies in a common frame (Steiner): relative to the common centre of mass, each adds m (d'd 1 - d d') with the offset d of its
+/// own. `None` if nonzero masses sum to 0.
 fn together<E: Element>(zero: &E, a: &Body<E>, b: &Body<E>) -> Option<Body<E>> {
     let mass = a.mass.plus(&b.mass);
     let moment = add(&scale(&a.mass, &a.com), &scale(&b.mass, &b.com));
@@ -259,7 +259,7 @@ pub fn symmetric<E: Element>(six: &[E]) -> Matrix<E> {
 }
 
 impl<E: Element> Arm<E> {
-    /// The arm where the named quantities of the description have the values `parameters`; `None` for a division by 0.
+    /// The arm with `parameters` for the named quantities of the description; `None` for a division by 0.
     pub fn new<K: Arithmetic<Element = E>>(arithmetic: &K, manipulator: &Manipulator, parameters: &[E]) -> Option<Arm<E>> {
         let builder = Builder { arithmetic, parameters };
         let mut joints = Vec::new();
@@ -286,7 +286,7 @@ impl<E: Element> Arm<E> {
         manipulator.parameters.iter().map(|p| arithmetic.constant(&formula(&p.nominal))).collect()
     }
 
-    /// The same arm in other numbers.
+    /// The same arm in another number type.
     pub fn map<F: Element>(&self, f: &impl Fn(&E) -> F) -> Arm<F> {
         let vector = |v: &Vector<E>| -> Vector<F> { [0, 1, 2].map(|i| f(&v[i])) };
         let matrix = |m: &Matrix<E>| -> Matrix<F> { [0, 1, 2].map(|i| vector(&m[i])) };

@@ -1,4 +1,4 @@
-//! B, C, g and the energies after Lagrange: sums over the bodies, derivatives by dual numbers.
+//! B, C, g and the energies by Lagrange's method: sums over the bodies, with derivatives by dual numbers.
 
 use armgen_description::parallel::parallel_map;
 
@@ -9,7 +9,7 @@ use super::vector::{self, apply, dot, product, scale, solve, transpose, Vector};
 use crate::arithmetic::dual::Dual;
 use crate::element::Element;
 
-/// What the equations of motion are made of: B and C row by row, g, F and U.
+/// The terms of the equations of motion: B and C row by row, g, F and U.
 pub struct Parts<E> {
     /// B(q).
     pub b: Vec<Vec<E>>,
@@ -23,7 +23,7 @@ pub struct Parts<E> {
     pub u: E,
 }
 
-/// A body where it is: mass, centre of mass, the link it is part of, and its inertia about the centre of mass in the base frame.
+/// A body in its pose: mass, centre of mass, link, and inertia about the centre of mass in the base frame.
 struct Placed<E> {
     mass: E,
     com: Vector<E>,
@@ -31,7 +31,7 @@ struct Placed<E> {
     inertia: Option<[[E; 3]; 3]>,
 }
 
-/// Links, load, and the masses of rotors.
+/// Links, load, and rotor masses.
 fn bodies<E: Element>(arm: &Arm<E>, pose: &Pose<E>) -> Vec<Placed<E>> {
     let mut bodies = Vec::new();
     let load = arm.payload.as_ref().map(|body| (arm.tip, &pose.tool, body));
@@ -49,12 +49,12 @@ fn bodies<E: Element>(arm: &Arm<E>, pose: &Pose<E>) -> Vec<Placed<E>> {
     bodies
 }
 
-/// B(q), row by row: the book, eq. 7.32; the rotor of joint i turns with its parent link and with k_r about its own axis besides.
+/// B(q), row by row (the book, eq. 7.32). The rotor of joint i rotates with its parent link, and with k_r about its own axis.
 pub fn inertia_matrix<E: Element>(arm: &Arm<E>, state: &State<E>) -> Vec<Vec<E>> {
     inertia_by(arm, state, &E::times)
 }
 
-/// The sum that B(q) is, with what `times` makes of each product of two speeds: the product, or its derivative.
+/// The sum in B(q), with `times` applied to each pair of speeds: their product, or its derivative.
 fn inertia_by<E: Element, R: Element>(arm: &Arm<E>, state: &State<E>, times: &dyn Fn(&E, &E) -> R) -> Vec<Vec<R>> {
     let pose = Pose::new(arm, state);
     let n = arm.dof();
@@ -110,10 +110,10 @@ pub fn inertia_derivatives<E: Element>(arm: &Arm<E>, state: &State<E>) -> Vec<Ve
     along_joints(arm, &|along| inertia_by(&moving, &state.moving(along, &still), &Dual::rate_of_product))
 }
 
-/// From so many joints on, derivatives by the joints are taken side by side: before, threads cost more than they save.
+/// From this number of joints on, derivatives run in parallel; for fewer, threads cost more than they save.
 const LONG: usize = 16;
 
-/// What `derivative` gives along the unit vector of each joint.
+/// The values of `derivative` along the unit vector of each joint.
 pub fn along_joints<E: Element, R: Send + Sync>(arm: &Arm<E>, derivative: &(dyn Fn(&[E]) -> R + Sync)) -> Vec<R> {
     let unit = |k: usize| {
         let mut along = vec![arm.zero.clone(); arm.dof()];
@@ -142,7 +142,7 @@ pub fn coriolis_matrix<E: Element>(derivatives: &[Vec<Vec<E>>], dq: &[E], half: 
     (0..n).map(|i| (0..n).map(|j| entry(i, j)).collect()).collect()
 }
 
-/// U(q) = -Σ m g0'p + Σ ½ k (q - rest)², rotors on the base included.
+/// U(q) = -Σ m g0'p + Σ ½ k (q - rest)², including rotors on the base.
 pub fn potential_energy<E: Element>(arm: &Arm<E>, state: &State<E>) -> E {
     let pose = Pose::new(arm, state);
     let of_masses =
@@ -150,7 +150,7 @@ pub fn potential_energy<E: Element>(arm: &Arm<E>, state: &State<E>) -> E {
     of_masses.plus(&spring_energy(arm, state, |_, joint| joint.stiffness.clone()))
 }
 
-/// Σ ½ k (q - rest)² of springs of some stiffness.
+/// Σ ½ k (q - rest)² of the springs, for a given stiffness.
 pub fn spring_energy<E: Element>(arm: &Arm<E>, state: &State<E>, stiffness: impl Fn(usize, &Joint<E>) -> E) -> E {
     let twice = arm.joints.iter().enumerate().fold(arm.zero.clone(), |sum, (i, joint)| {
         let away = state.q[i].minus(&joint.rest);
@@ -171,8 +171,8 @@ pub fn gravity<E: Element>(arm: &Arm<E>, state: &State<E>) -> Vec<E> {
     along_joints(arm, &|along| potential_energy(&moving, &state.moving(along, &still)).rate)
 }
 
-/// F_i = (k_r² F_m + F_v + F_3 dq_i²) rate_i + (F_c + F_s exp(-|dq_i| / v)) sign_i + F_0, with what is drawn for signs and exponentials:
-/// the cube of dq_i is taken once by `rates`.
+/// F_i = (k_r² F_m + F_v + F_3 dq_i²) rate_i + (F_c + F_s exp(-|dq_i| / v)) sign_i + F_0, with the drawn values of signs and exponentials. The
+/// cubic term uses `rates` for one of its factors.
 pub fn friction<E: Element>(arm: &Arm<E>, state: &State<E>, rates: &[E]) -> Vec<E> {
     let State { dq, signs, stribeck, .. } = state;
     arm.joints
@@ -190,12 +190,12 @@ pub fn friction<E: Element>(arm: &Arm<E>, state: &State<E>, rates: &[E]) -> Vec<
         .collect()
 }
 
-/// Whether friction of a joint grows with its load.
+/// Whether any joint has load-dependent friction.
 pub fn has_load_friction<E: Element>(arm: &Arm<E>) -> bool {
     arm.joints.iter().any(|joint| !joint.load.is_zero())
 }
 
-/// F_l |g_i| sign_i with |g| = sign(g) g; nothing where no joint has it.
+/// F_l |g_i| sign_i with |g| = sign(g) g; `None` if no joint has it.
 pub fn load_friction<E: Element>(arm: &Arm<E>, state: &State<E>, g: &[E]) -> Option<Vec<E>> {
     let of_joint = |((joint, sign), g): ((&Joint<E>, &E), &E)| joint.load.times(&g.sign().times(g)).times(sign);
     has_load_friction(arm).then(|| arm.joints.iter().zip(&state.signs).zip(g).map(of_joint).collect())

@@ -1,18 +1,18 @@
-//! Torques after Newton and Euler, body by body in the base frame: a second derivation beside Lagrange's, and linear in the ten parameters of
-//! each body as it stands.
+//! Torques by the Newton-Euler method, body by body in the base frame: a second derivation besides Lagrange's. It is linear in the ten
+//! inertial parameters of each body.
 //!
-//! For a body with mass m, first moment h = ∫ r dm and inertia I about the origin of its frame, which accelerates with a (gravity taken off)
-//! and turns with ω, α:
+//! Consider a body with mass m, first moment h = ∫ r dm and inertia I about the origin of its frame. The origin has the acceleration a (minus
+//! gravity); the body rotates with ω, α:
 //!
 //! ```text
 //! F = m a + α × h + ω × (ω × h)        N = I α + ω × (I ω) + h × a
 //! τ_j = z_j · (N + (p - p_j) × F) (revolute),  z_j · F (prismatic),  for each joint j that moves the body
 //! ```
 //!
-//! A rotor has the angular momentum I_m s z with s = z·ω + k_r dq: its rate of change acts on the parent link, k_r I_m ds/dt on its joint.
+//! A rotor has the angular momentum I_m s z with s = z·ω + k_r dq. Its rate of change acts on the parent link, and k_r I_m ds/dt on its joint.
 //!
-//! The regressor has two rates: C(q, dq) dqr = ½ (V(dq + dqr) - V(dq) - V(dqr)), where V(u) = C(q, u) u is what a motion with rates u and no
-//! acceleration needs without gravity; Christoffel's C is the one for which this form is symmetric.
+//! The regressor has two rates: C(q, dq) dqr = ½ (V(dq + dqr) - V(dq) - V(dqr)). V(u) = C(q, u) u is the torque of a motion with rates u and no
+//! accelerations, without gravity. This symmetric form belongs to the C of the Christoffel symbols.
 
 use super::arm::{symmetric, Arm, Body};
 use super::pose::Pose;
@@ -22,7 +22,7 @@ use crate::element::Element;
 /// The ten inertial parameters of a body in its frame: m, mcx, mcy, mcz, Ixx, Ixy, Iyy, Ixz, Iyz, Izz about the frame's origin.
 pub type Ten<E> = [E; 10];
 
-/// The ten parameters of a body, by Steiner: I = I_c + m (c'c 1 - c c').
+/// The ten parameters of a body (Steiner): I = I_c + m (c'c 1 - c c').
 pub fn ten<E: Element>(body: &Body<E>) -> Ten<E> {
     let (m, c) = (&body.mass, &body.com);
     let moment = scale(m, c);
@@ -39,7 +39,7 @@ pub fn ten<E: Element>(body: &Body<E>) -> Ten<E> {
     [m.clone(), hx, hy, hz, entry(0, 0), entry(0, 1), entry(1, 1), entry(0, 2), entry(1, 2), entry(2, 2)]
 }
 
-/// The body with these ten parameters; `None` without a mass.
+/// The body with these ten parameters; `None` if its mass is 0.
 pub fn body<E: Element>(ten: &[E]) -> Option<Body<E>> {
     let inverse = ten[0].inverse()?;
     let com = [1, 2, 3].map(|i| ten[i].times(&inverse));
@@ -58,7 +58,7 @@ pub fn body<E: Element>(ten: &[E]) -> Option<Body<E>> {
     Some(Body { mass: ten[0].clone(), com, inertia })
 }
 
-/// Rates and accelerations with which a motion is evaluated, and the acceleration of gravity.
+/// Rates and accelerations of a motion, and the acceleration of gravity.
 #[derive(Clone, Debug)]
 pub struct Motion<E> {
     /// Joint rates.
@@ -69,7 +69,7 @@ pub struct Motion<E> {
     pub gravity: Vector<E>,
 }
 
-/// ω, α and the acceleration of the joint frame's origin (gravity taken off), all in the base frame.
+/// ω, α and the acceleration of the joint frame's origin (minus gravity), in the base frame.
 #[derive(Clone, Debug)]
 struct LinkMotion<E> {
     omega: Vector<E>,
@@ -85,7 +85,7 @@ impl<E: Element> LinkMotion<E> {
     }
 }
 
-/// A motion of an arm at a state, ready for the torques that any body in it needs.
+/// A motion of an arm at a state, for the torques of any body.
 pub struct ArmMotion<'a, E> {
     arm: &'a Arm<E>,
     pose: &'a Pose<E>,
@@ -93,7 +93,7 @@ pub struct ArmMotion<'a, E> {
     links: Vec<LinkMotion<E>>,
 }
 
-/// What carries a body.
+/// The carrier of a body.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Carrier {
     /// A link, in its link frame.
@@ -121,7 +121,7 @@ impl<'a, E: Element> ArmMotion<'a, E> {
                 alpha = add(&alpha, &add(&change, &cross(&omega, &turn)));
                 omega = add(&omega, &turn);
             } else {
-                // Sliding along z in a turning link: ddq z + 2 ω × z dq.
+                // Translation along z in a rotating link: ddq z + 2 ω × z dq.
                 let twice = add(&turn, &turn);
                 a = add(&a, &add(&change, &cross(&omega, &twice)));
             }
@@ -130,7 +130,7 @@ impl<'a, E: Element> ArmMotion<'a, E> {
         ArmMotion { arm, pose, motion, links }
     }
 
-    /// Adds the torques that a body needs.
+    /// Adds the torques of a body.
     pub fn add_body(&self, carrier: Carrier, ten: &[E], torques: &mut [E]) {
         let (link, frame) = match carrier {
             Carrier::Link(link) => (link, &self.pose.links[link]),
@@ -162,7 +162,7 @@ impl<'a, E: Element> ArmMotion<'a, E> {
         }
     }
 
-    /// Adds the torques that the mass of the rotor of joint `i` needs.
+    /// Adds the torques of the rotor mass of joint `i`.
     pub fn add_rotor_mass(&self, i: usize, torques: &mut [E]) {
         let joint = &self.arm.joints[i];
         let (Some(motor), Some(parent)) = (&joint.motor, joint.parent) else { return };
@@ -172,7 +172,7 @@ impl<'a, E: Element> ArmMotion<'a, E> {
         self.add_wrench(Some(parent), &point, &scale(&motor.mass, &a), &nothing, torques);
     }
 
-    /// Adds the torques that a rotor inertia at joint `i` needs.
+    /// Adds the torques of a rotor inertia at joint `i`.
     pub fn add_rotor_inertia(&self, i: usize, inertia: &E, torques: &mut [E]) {
         let joint = &self.arm.joints[i];
         let Some(motor) = &joint.motor else { return };
@@ -191,7 +191,7 @@ impl<'a, E: Element> ArmMotion<'a, E> {
         torques[i] = torques[i].plus(&motor.ratio.times(inertia).times(&change));
     }
 
-    /// Adds the torque that an armature of joint `i` needs.
+    /// Adds the torque of an armature at joint `i`.
     pub fn add_armature(&self, i: usize, armature: &E, torques: &mut [E]) {
         torques[i] = torques[i].plus(&armature.times(&self.motion.accelerations[i]));
     }
@@ -214,14 +214,14 @@ impl<'a, E: Element> ArmMotion<'a, E> {
     }
 }
 
-/// B ddqr + C(q, dq) dqr + g as a sum over motions, ready for any body.
+/// B ddqr + C(q, dq) dqr + g as a sum over motions, for any body.
 pub struct ReferenceMotion<'a, E> {
-    /// Motions with their weights: accelerations and gravity alone; then V(dq + dqr), V(dq), V(dqr).
+    /// Motions with their weights: first accelerations and gravity alone; then V(dq + dqr), V(dq), V(dqr).
     parts: Vec<(E, ArmMotion<'a, E>)>,
 }
 
 impl<'a, E: Element> ReferenceMotion<'a, E> {
-    /// The motions of a reference.
+    /// The motions for a reference.
     pub fn new(arm: &'a Arm<E>, pose: &'a Pose<E>, dq: &[E], dqr: &[E], ddqr: &[E]) -> ReferenceMotion<'a, E> {
         let (zero, half) = (&arm.zero, arm.half());
         let still = vec![zero.clone(); arm.dof()];
@@ -238,7 +238,7 @@ impl<'a, E: Element> ReferenceMotion<'a, E> {
         ReferenceMotion { parts: parts.into_iter().map(|(k, motion)| (k, ArmMotion::new(arm, pose, motion))).collect() }
     }
 
-    /// The torques that `add` adds, over all motions.
+    /// The sum over all motions of the torques from `add`.
     pub fn torques(&self, add: &dyn Fn(&ArmMotion<'a, E>, &mut [E])) -> Vec<E> {
         let (_, first) = &self.parts[0];
         let mut total = vec![first.arm.zero.clone(); first.arm.dof()];

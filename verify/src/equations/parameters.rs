@@ -1,8 +1,8 @@
-//! The parameter vector: what its entries are, the arm with given entries, and the regressor, column by column.
+//! The parameter vector: its entries, the arm with given entries, and the regressor, column by column.
 //!
-//! Standard parameters are ten per link in its link frame, then what the description gives of rotors and friction, then ten of the payload.
-//! Base parameters are named after standard ones, those of links in their *joint frames*; a name that ends in R carries others with it.
-//! The matrix M of pi_base = M phi_standard is found from Y_standard = Y_base M at random states.
+//! Standard parameters are ten per link in its link frame, then those of rotors and friction in the description, then ten of the payload.
+//! Base parameters have names of standard parameters, those of links in their *joint frames*; a final R marks a combination.
+//! The matrix M of pi_base = M phi_standard follows from Y_standard = Y_base M at random states.
 
 use armgen_description::manipulator::{Manipulator, RegressorChoice};
 
@@ -22,7 +22,7 @@ pub enum Standard {
     Link(usize, usize),
     /// Inertia of a joint's rotor.
     RotorInertia(usize),
-    /// Inertia that a joint alone feels.
+    /// Inertia that acts on a single joint.
     Armature(usize),
     /// Viscous friction at a joint's rotor.
     RotorViscous(usize),
@@ -30,7 +30,7 @@ pub enum Standard {
     Viscous(usize),
     /// Coulomb friction at a joint.
     Coulomb(usize),
-    /// Friction at a joint whatever its rate.
+    /// Constant torque of a joint, independent of its rate.
     Offset(usize),
     /// Cubic friction at a joint.
     Cubic(usize),
@@ -42,7 +42,7 @@ pub enum Standard {
     Payload(usize),
 }
 
-/// The unit of a parameter, or that it has one of its own.
+/// The unit of a parameter, or a unit of its own.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Unit {
     /// kg
@@ -51,14 +51,14 @@ pub enum Unit {
     Moment,
     /// kg m²
     Inertia,
-    /// That of the parameter of this number.
+    /// The unit of the parameter with this number.
     Own(usize),
 }
 
 const TEN: [&str; 10] = ["m", "mcx", "mcy", "mcz", "Ixx", "Ixy", "Iyy", "Ixz", "Iyz", "Izz"];
 
 impl Standard {
-    /// The unit of the parameter, the one of this number.
+    /// The unit of this parameter, which has this number.
     pub fn unit(self, number: usize) -> Unit {
         match self {
             Standard::Link(_, 0) | Standard::Payload(0) => Unit::Mass,
@@ -68,13 +68,13 @@ impl Standard {
         }
     }
 
-    /// Whether its torque is one of friction.
+    /// Whether its torque is friction.
     fn is_friction(self) -> bool {
         use Standard::*;
         matches!(self, RotorViscous(_) | Viscous(_) | Coulomb(_) | Offset(_) | Cubic(_) | Stribeck(_))
     }
 
-    /// All of an arm, in the order of the format.
+    /// All parameters of an arm, in the order of the format.
     pub fn all(manipulator: &Manipulator) -> Vec<Standard> {
         let n = manipulator.joints.len();
         let mut all: Vec<Standard> = (0..n).flat_map(|i| (0..10).map(move |k| Standard::Link(i, k))).collect();
@@ -116,7 +116,7 @@ impl Standard {
         }
     }
 
-    /// Its value in an arm.
+    /// Its value for an arm.
     pub fn value<E: Element>(self, arm: &Arm<E>) -> E {
         let motor = |i: usize| arm.joints[i].motor.as_ref();
         match self {
@@ -135,7 +135,7 @@ impl Standard {
     }
 }
 
-/// The arm with other standard parameters; `None` if a body with moments has no mass.
+/// The arm with other standard parameters; `None` if a body has moments but no mass.
 pub fn with_standard<E: Element>(arm: &Arm<E>, columns: &[Standard], values: &[E]) -> Option<Arm<E>> {
     let mut arm = arm.clone();
     let (n, zero) = (arm.dof(), arm.zero.clone());
@@ -167,7 +167,7 @@ pub fn with_standard<E: Element>(arm: &Arm<E>, columns: &[Standard], values: &[E
     Some(arm)
 }
 
-/// In which frame the ten parameters of a link are meant.
+/// The frame for the ten parameters of a link.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum LinkFrames {
     /// The link frame of the description.
@@ -179,7 +179,7 @@ pub enum LinkFrames {
 /// Y(q, dq, dqr, ddqr) for some standard parameters, column by column: the torques of a unit of each.
 pub fn standard_columns<E: Element>(arm: &Arm<E>, state: &State<E>, columns: &[Standard], frames: LinkFrames) -> Vec<Vec<E>> {
     let described = Pose::new(arm, state);
-    // The frames of bodies alone: places and axes of rotors, and the load's frame, stay what the description says.
+    // Only bodies move to other frames; positions and axes of rotors, and the load's frame, stay as described.
     let pose = match frames {
         LinkFrames::Described => described.clone(),
         LinkFrames::Joint => described.clone().with_links_in_joint_frames(),
@@ -219,15 +219,15 @@ pub fn standard_columns<E: Element>(arm: &Arm<E>, state: &State<E>, columns: &[S
         .collect()
 }
 
-/// An arm without other standard parameters than some, links in their joint frames: its equations are linear in these, and need no centre of mass.
+/// An arm with only some standard parameters and links in joint frames: its equations are linear in these and need no centre of mass.
 pub struct KeptAlone<'a, E> {
-    /// Where everything is, and the masses of rotors.
+    /// The geometry, and the masses of rotors.
     pub arm: &'a Arm<E>,
-    /// The parameters that it has.
+    /// The parameters to keep.
     pub kept: &'a [Standard],
-    /// All that there are: the others of these are 0.
+    /// All parameters; those not kept are 0.
     pub all: &'a [Standard],
-    /// Their values.
+    /// Values of the kept parameters.
     pub pi: &'a [E],
 }
 
@@ -265,7 +265,7 @@ impl<E: Element> KeptAlone<'_, E> {
         of_links.iter().zip(&of_others).map(|(a, b)| a.plus(b)).collect()
     }
 
-    /// B, C and g from the torques of single accelerations and rates.
+    /// B, C and g from the torques of unit accelerations and rates.
     pub fn parts(&self, state: &State<E>) -> Parts<E> {
         let (n, zero) = (self.arm.dof(), &self.arm.zero);
         let described = Pose::new(self.arm, state);
@@ -300,7 +300,7 @@ impl<E: Element> KeptAlone<'_, E> {
         Parts { b, c, g, f, u: self.potential_energy(state) }
     }
 
-    /// U(q) = -Σ g0'(m p + R h) + Σ ½ k (q - rest)², h the first moment in a frame at p.
+    /// U(q) = -Σ g0'(m p + R h) + Σ ½ k (q - rest)², with the first moment h in a frame at p.
     pub fn potential_energy(&self, state: &State<E>) -> E {
         let described = Pose::new(self.arm, state);
         let links = (0..self.arm.dof()).map(|i| (&described.chosen[i], self.ten(|k| Standard::Link(i, k))));
@@ -321,7 +321,7 @@ impl<E: Element> KeptAlone<'_, E> {
     }
 }
 
-/// B ddqr + C(q, dq) dqr + F + g of an arm, friction with dqr, the squares and the signs of dq.
+/// B ddqr + C(q, dq) dqr + F + g of an arm. Friction uses dqr, the squares of dq and the signs of dq.
 pub fn reference_torques<E: Element>(arm: &Arm<E>, state: &State<E>) -> Vec<E> {
     let pose = Pose::new(arm, state);
     let torques = ReferenceMotion::new(arm, &pose, &state.dq, &state.dqr, &state.ddqr).whole();
@@ -330,19 +330,19 @@ pub fn reference_torques<E: Element>(arm: &Arm<E>, state: &State<E>) -> Vec<E> {
     torques.iter().zip(friction).zip(springs).map(|((a, b), c)| a.plus(&b).plus(&c)).collect()
 }
 
-/// What the entries of the parameter vector are.
+/// The kinds of parameter vectors.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Vector {
-    /// Named quantities of the description, by their numbers.
+    /// Named quantities of the description, by number.
     Names(Vec<usize>),
     /// All standard parameters.
     Standard(Vec<Standard>),
-    /// Base parameters: the standard ones after which they are named, and whether others are carried along; all standard ones.
+    /// Base parameters: the standard parameters in their names with a flag for combinations; and all standard parameters.
     Base(Vec<(Standard, bool)>, Vec<Standard>),
 }
 
 impl Vector {
-    /// The vector of a description. The choice of base parameters is free: it is read from the names in the module.
+    /// The vector of a description. Base parameters are a free choice, read from the names in the module.
     pub fn of(manipulator: &Manipulator, names: &[String]) -> Result<Vector, String> {
         match &manipulator.regressor {
             RegressorChoice::Names(ids) => Ok(Vector::Names(ids.iter().map(|id| id.0 as usize).collect())),
@@ -360,7 +360,7 @@ impl Vector {
         }
     }
 
-    /// The names of the entries, where they are not free.
+    /// The names of the entries, if they are not a free choice.
     pub fn names(&self, manipulator: &Manipulator) -> Option<Vec<String>> {
         match self {
             Vector::Names(ids) => Some(ids.iter().map(|&id| manipulator.parameters[id].name.clone()).collect()),
@@ -375,7 +375,7 @@ pub fn units(parameters: impl Iterator<Item = Standard>) -> Vec<Unit> {
     parameters.enumerate().map(|(number, parameter)| parameter.unit(number)).collect()
 }
 
-/// Base parameters by their names, each with whether it carries others.
+/// Base parameters from their names, each with a flag for combinations.
 pub fn base_parameters(manipulator: &Manipulator, names: &[String]) -> Result<Vec<(Standard, bool)>, String> {
     let all = Standard::all(manipulator);
     let find = |name: &str| all.iter().copied().find(|p| p.name() == name);
@@ -386,8 +386,8 @@ pub fn base_parameters(manipulator: &Manipulator, names: &[String]) -> Result<Ve
     names.iter().map(base).collect()
 }
 
-/// The matrix M of pi_base = M phi_standard, row by row; an error if the base columns are not independent or do not span all others, friction apart
-/// from all else.
+/// The matrix M of pi_base = M phi_standard, row by row, separately for friction and the rest. An error if the base columns are dependent or do
+/// not span all others.
 pub fn base_map<K: Arithmetic>(
     arithmetic: &mut K,
     arm: &Arm<K::Element>,
@@ -402,7 +402,7 @@ pub fn base_map<K: Arithmetic>(
         let state = State::draw(arithmetic, n).with_stribeck(arithmetic, fades);
         let y = standard_columns(arm, &state, base, LinkFrames::Joint);
         let full = standard_columns(arm, &state, all, LinkFrames::Described);
-        // Friction and all else one by one: no friction is part of a weight, though on a slide both may be constant.
+        // Friction and the rest separately: friction is never part of a weight, although both may be constant on a prismatic joint.
         for (row, friction) in (0..n).flat_map(|row| [(row, false), (row, true)]) {
             let part = |columns: &[Vec<K::Element>], of: &[Standard]| {
                 let entries = columns.iter().zip(of);
@@ -414,7 +414,7 @@ pub fn base_map<K: Arithmetic>(
             right.push(part(&full, all));
         }
     }
-    // Rows that make the left side regular, then all rows as a test.
+    // Rows that make the left side regular; then all rows as a test.
     let mut chosen: Vec<usize> = Vec::new();
     let mut echelon: Vec<(usize, Vec<K::Element>)> = Vec::new();
     for (index, row) in left.iter().enumerate() {

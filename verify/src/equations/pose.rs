@@ -1,57 +1,57 @@
-//! Where everything is: frames of joints, links and end effector in the base frame, and the columns of Jacobians.
+//! The pose of an arm: frames of joints, links and end effector in the base frame, and the columns of Jacobians.
 
 use super::arm::{Arm, Frame};
 use super::state::State;
 use super::vector::{add, apply, cross, product, scale, sub, transpose, Vector};
 use crate::element::Element;
 
-/// Frames in the base frame at one state.
+/// Frames relative to the base frame at a state.
 #[derive(Clone, Debug)]
 pub struct Pose<E> {
-    /// Frames that have moved with each joint: origin on the axis.
+    /// The frames after each joint's motion, with their origin on the axis.
     pub joints: Vec<Frame<E>>,
     /// Directions of the joint axes.
     pub axes: Vec<Vector<E>>,
-    /// The frames in which base parameters are meant.
+    /// The frames for base parameters.
     pub chosen: Vec<Frame<E>>,
-    /// Link frames as the description defines them.
+    /// The link frames of the description.
     pub links: Vec<Frame<E>>,
     /// The end effector.
     pub tool: Frame<E>,
-    /// For each link the joints that move it, from its own to the base.
+    /// For each link the joints that move it, from its own joint to the base.
     pub ancestors: Vec<Vec<usize>>,
     revolute: Vec<bool>,
     zero: E,
 }
 
 impl<E: Element> Frame<E> {
-    /// The frame `inner`, given in this one, in the frame that this one is given in.
+    /// The composition with `inner`, which is given in this frame.
     pub fn then(&self, inner: &Frame<E>) -> Frame<E> {
         Frame { rotation: product(&self.rotation, &inner.rotation), origin: self.point(&inner.origin) }
     }
 
-    /// A point of this frame in the outer one.
+    /// The coordinates of a point of this frame in the outer frame.
     pub fn point(&self, point: &Vector<E>) -> Vector<E> {
         add(&apply(&self.rotation, point), &self.origin)
     }
 
-    /// A direction of this frame in the outer one.
+    /// The coordinates of a direction of this frame in the outer frame.
     pub fn direction(&self, direction: &Vector<E>) -> Vector<E> {
         apply(&self.rotation, direction)
     }
 
-    /// A direction of the outer frame in this one.
+    /// The coordinates of a direction of the outer frame in this frame.
     pub fn into_frame(&self, direction: &Vector<E>) -> Vector<E> {
         apply(&transpose(&self.rotation), direction)
     }
 
-    /// No rotation, no translation.
+    /// The identity.
     pub fn identity(zero: &E, one: &E) -> Frame<E> {
         let rotation = [0, 1, 2].map(|i| [0, 1, 2].map(|j| if i == j { one.clone() } else { zero.clone() }));
         Frame { rotation, origin: [0; 3].map(|_| zero.clone()) }
     }
 
-    /// The outer frame in this one.
+    /// The inverse transform.
     pub fn inverse(&self) -> Frame<E> {
         let rotation = transpose(&self.rotation);
         let origin = apply(&rotation, &self.origin).map(|x| x.negated());
@@ -102,13 +102,13 @@ impl<E: Element> Pose<E> {
         Pose { joints, axes, chosen, links, tool, ancestors, revolute, zero: zero.clone() }
     }
 
-    /// The same pose with each link's own frame taken to be the one in which its base parameters are meant.
+    /// The same pose with the links in the frames for base parameters.
     pub fn with_links_in_joint_frames(mut self) -> Pose<E> {
         self.links.clone_from(&self.chosen);
         self
     }
 
-    /// Linear and angular velocity per unit of each joint's rate, of a point fixed in link `link` (`None`: fixed in the base).
+    /// Linear and angular velocity per unit of each joint rate, for a point fixed in `link` (`None`: in the base).
     pub fn jacobian(&self, link: Option<usize>, point: &Vector<E>) -> Vec<(Vector<E>, Vector<E>)> {
         let nothing = || [0; 3].map(|_| self.zero.clone());
         let mut columns = vec![(nothing(), nothing()); self.joints.len()];

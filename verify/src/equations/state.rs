@@ -1,4 +1,4 @@
-//! A state: values of all inputs of the equations.
+//! A state: the values of all inputs of the equations.
 
 use crate::arithmetic::dual::Dual;
 use crate::arithmetic::Arithmetic;
@@ -9,9 +9,9 @@ use crate::program::{by_addition, Argument, Inputs, Turn};
 /// Values of joint variables, rates, accelerations, references, torques and parameters.
 #[derive(Clone, Debug)]
 pub struct State<E> {
-    /// Sine and cosine of each joint variable. Those of prismatic joints occur in no equation, and no function may use them.
+    /// Sine and cosine of each joint variable. Those of prismatic joints occur in no equation; no function may use them.
     pub angles: Vec<(E, E)>,
-    /// Joint variables. Those of revolute joints occur in no equation but through sine and cosine and in the torques of springs.
+    /// Joint variables. Revolute ones enter the equations only through sine and cosine, and through the torques of springs.
     pub q: Vec<E>,
     /// Joint rates.
     pub dq: Vec<E>,
@@ -23,11 +23,11 @@ pub struct State<E> {
     pub ddqr: Vec<E>,
     /// Joint torques.
     pub tau: Vec<E>,
-    /// Signs of the joint rates: independent inputs here, as in the equations.
+    /// Signs of the joint rates, as independent inputs.
     pub signs: Vec<E>,
-    /// exp(-|dq| / v) of the joints, v their Stribeck velocities: independent inputs here, as in the equations.
+    /// exp(-|dq| / v) of the joints with their Stribeck velocities v, as independent inputs.
     pub stribeck: Vec<E>,
-    /// These velocities, for derivatives by the rates; 1 until an arm says what they are.
+    /// The Stribeck velocities, for derivatives by the rates; 1 until an arm sets them.
     pub stribeck_velocities: Vec<E>,
     /// The parameter vector.
     pub pi: Vec<E>,
@@ -38,14 +38,14 @@ pub struct State<E> {
 }
 
 impl<E: Element> State<E> {
-    /// A state of these arguments; nothing is left of Stribeck friction.
+    /// A state with these arguments, without Stribeck friction.
     pub fn of(arguments: Arguments<E>, angles: Vec<(E, E)>, signs: Vec<E>, [zero, one]: [E; 2]) -> State<E> {
         let Arguments { pi, q, dq, ddq, dqr, ddqr, tau } = arguments;
         let (stribeck, stribeck_velocities) = (vec![zero.clone(); q.len()], vec![one.clone(); q.len()]);
         State { angles, q, dq, ddq, dqr, ddqr, tau, signs, stribeck, stribeck_velocities, pi, zero, one }
     }
 
-    /// The same with exponentials drawn for the joints that have Stribeck friction.
+    /// The same with random exponentials for joints with Stribeck friction.
     #[must_use]
     pub fn with_stribeck<K: Arithmetic<Element = E>>(
         mut self,
@@ -58,7 +58,7 @@ impl<E: Element> State<E> {
         self
     }
 
-    /// A random state without Stribeck friction; `pi` is filled in by who knows what it means.
+    /// A random state without Stribeck friction; the caller fills in `pi`.
     pub fn draw<K: Arithmetic<Element = E>>(arithmetic: &mut K, n: usize) -> State<E> {
         let mut many = |_| (0..n).map(|_| arithmetic.draw()).collect::<Vec<E>>();
         let [q, dq, ddq, dqr, ddqr, tau, signs] = [0; 7].map(&mut many);
@@ -68,7 +68,7 @@ impl<E: Element> State<E> {
         State { angles, q, dq, ddq, dqr, ddqr, tau, signs, stribeck, stribeck_velocities, pi: Vec::new(), zero, one }
     }
 
-    /// This state moving: joint variables with `along` as their rates of change, rates with `rates` as theirs, all else at rest.
+    /// The state as dual numbers: joint variables change with `along`, rates with `rates`, everything else is constant.
     pub fn moving(&self, along: &[E], rates: &[E]) -> State<Dual<E>> {
         let still = |v: &[E]| v.iter().map(Dual::constant).collect::<Vec<_>>();
         let with = |v: &[E], rates: &[E]| {
@@ -102,7 +102,7 @@ impl<E: Element> State<E> {
 }
 
 impl<E> State<E> {
-    /// The same state in other numbers.
+    /// The same state in another number type.
     pub fn map<F>(self, of: &dyn Fn(E) -> F) -> State<F> {
         let all = |values: Vec<E>| values.into_iter().map(of).collect::<Vec<F>>();
         State {
@@ -154,7 +154,7 @@ impl<E: Element> Inputs<E> for State<E> {
         self.signs[joint].clone()
     }
 
-    /// The literal is that of the joint: this is seen to before anything is run.
+    /// The literal is the joint's Stribeck velocity; a check before any run ensures this.
     fn stribeck(&self, joint: usize, _: &E) -> E {
         self.stribeck[joint].clone()
     }

@@ -1,4 +1,4 @@
-//! Vectors and 3 x 3 matrices of exact numbers.
+//! Vectors and 3×3 matrices of exact numbers.
 
 use crate::element::Element;
 
@@ -48,7 +48,7 @@ pub fn transpose<E: Element>(m: &Matrix<E>) -> Matrix<E> {
     [0, 1, 2].map(|i| [0, 1, 2].map(|j| m[j][i].clone()))
 }
 
-/// The solution of A X = R, column by column of R, by elimination; `None` if A is singular.
+/// The solution of A X = R by elimination, with R as columns; `None` if A is singular.
 pub fn solve<E: Element>(a: &[Vec<E>], right: &[Vec<E>]) -> Option<Vec<Vec<E>>> {
     let n = a.len();
     let mut rows: Vec<Vec<E>> = a.iter().zip(right).map(|(a, r)| [a.as_slice(), r.as_slice()].concat()).collect();

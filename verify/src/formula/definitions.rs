@@ -1,11 +1,11 @@
-//! Formulas that are defined once and that others refer to by a name.
+//! Formulas that are defined once and referenced by name.
 //!
 //! ```text
 //! k0 = 3/10*cos(7/10) - sin(7/10)    k1 = k0^2 + 1/4    ...
 //! ```
 //!
-//! Each refers only to those before it, so that a list of them is a graph without circles, and whatever is asked of it takes a time that
-//! grows with its length: values and enclosures are kept, and found in the order of the list, not by recursion.
+//! Each uses only earlier definitions, so the list is an acyclic graph. Values and enclosures are cached and computed in the order of the
+//! list, without recursion, in time proportional to its length.
 
 use std::cell::{Cell, RefCell};
 use std::cmp::Ordering;
@@ -19,26 +19,26 @@ use super::{Formula, Root};
 use crate::check::Check;
 use crate::interval::Interval;
 
-/// What a name begins with; its number follows.
+/// Prefix of a name; its number follows.
 pub const PREFIX: &str = "k";
 
-/// What could have more bits is no constant of a robot.
+/// Maximum number of bits; no constant of a robot has more.
 pub(super) const LARGEST: usize = 1 << 18;
 
-/// Formulas in formulas, and definitions in definitions: what stands deeper is no constant of a robot.
+/// Maximum depth of formulas and definitions; no constant of a robot is deeper.
 const DEEPEST: usize = 8000;
 
 /// A formula with a name.
 pub struct Definition {
     index: usize,
     formula: Formula,
-    /// About how many bits its value may have before and behind the point.
+    /// Approximate number of bits of its value, before and after the point.
     size: usize,
-    /// How deep it is.
+    /// Nesting depth.
     depth: usize,
-    /// A hash of what it stands for, whatever the names are.
+    /// A hash of its meaning, independent of names.
     hash: String,
-    /// The definitions that it refers to itself.
+    /// The definitions that it uses directly.
     refers: Vec<Arc<Definition>>,
     enclosures: Mutex<Vec<(usize, Option<Interval>)>>,
 }
@@ -54,12 +54,12 @@ impl Definition {
         format!("{PREFIX}{}", self.index)
     }
 
-    /// What it stands for.
+    /// Its formula.
     pub fn formula(&self) -> &Formula {
         &self.formula
     }
 
-    /// The enclosure to so many bits; `enclose` gives that of a formula.
+    /// The enclosure with this many bits; `enclose` computes it for a formula.
     pub(crate) fn enclosure(self: &Arc<Self>, bits: usize, enclose: impl Fn(&Formula) -> Option<Interval>) -> Option<Interval> {
         if let Some(known) = self.known(bits) {
             return known;
@@ -83,7 +83,7 @@ impl fmt::Debug for Definition {
     }
 }
 
-/// Definitions of one list are told apart by their places.
+/// Positions identify the definitions of a list.
 impl PartialEq for Definition {
     fn eq(&self, other: &Definition) -> bool {
         self.index == other.index
@@ -104,18 +104,18 @@ impl Ord for Definition {
     }
 }
 
-/// What the formulas of a module may cost, in nanoseconds; those of an arm of 32 prismatic joints with general angles cost a fifth of it.
+/// Limit on the cost of a module's formulas, in nanoseconds; an arm of 32 prismatic joints with general angles takes a fifth of it.
 const MOST_WORK: u64 = 1 << 37;
 
-/// Copying and comparing, in nanoseconds.
+/// Cost of copying and comparing a character, in nanoseconds.
 const WORK_OF_CHARACTER: u64 = 50;
 
-/// A list of definitions, by number, and what may be spent on them and on the formulas that are read with them.
+/// A list of definitions by number, with the remaining budget for them and for formulas that use them.
 #[derive(Clone, Debug)]
 pub struct Definitions {
     list: BTreeMap<usize, Arc<Definition>>,
     left: Cell<u64>,
-    /// What was read, as most constants stand in many places.
+    /// Cache of parsed texts, because most constants occur many times.
     read: RefCell<BTreeMap<String, Formula>>,
 }
 
@@ -126,7 +126,7 @@ impl Default for Definitions {
 }
 
 impl Definitions {
-    /// Reads a formula that refers to these definitions, or to none; one that was read before costs its length.
+    /// Parses a formula that may use these definitions; a cached formula only costs its length.
     pub fn formula(&self, text: &str) -> Result<Formula, String> {
         self.charge(WORK_OF_CHARACTER.saturating_mul(text.len() as u64))?;
         if let Some(known) = self.read.borrow().get(text) {
@@ -137,13 +137,13 @@ impl Definitions {
         Ok(formula)
     }
 
-    /// How much of it is spent.
+    /// The spent fraction of the budget.
     #[cfg(test)]
     pub(crate) fn spent(&self) -> f64 {
         1.0 - self.left.get() as f64 / MOST_WORK as f64
     }
 
-    /// Counts work before it is done.
+    /// Charges work before it is done.
     pub(super) fn charge(&self, work: u64) -> Result<(), String> {
         let left = self.left.get().checked_sub(work);
         if left.is_none() && Check::Work.is_made() {
@@ -153,7 +153,7 @@ impl Definitions {
         Ok(())
     }
 
-    /// Reads the definition of the number given.
+    /// Parses the definition with this number.
     pub fn define(&mut self, index: usize, text: &str) -> Result<(), String> {
         let formula = Formula::parse_with(text, self)?;
         let (size, depth) = (size(&formula), depth(&formula));
@@ -176,7 +176,7 @@ impl Definitions {
     }
 }
 
-/// About how many bits the value of a formula may have before and behind the point.
+/// Approximate number of bits of a formula's value, before and after the point.
 pub(super) fn size(formula: &Formula) -> usize {
     match formula {
         Formula::Rational(value) => value.numerator().bit_len() + value.denominator().bit_len(),
@@ -190,7 +190,7 @@ pub(super) fn size(formula: &Formula) -> usize {
     }
 }
 
-/// How deep formulas stand in it.
+/// Nesting depth of a formula.
 fn depth(formula: &Formula) -> usize {
     let inner = match formula {
         Formula::Rational(_) | Formula::Pi | Formula::Arctangent(_) | Formula::Root(Root::Integer(_)) => 0,
@@ -203,7 +203,7 @@ fn depth(formula: &Formula) -> usize {
     inner + 1
 }
 
-/// The definitions that a formula refers to itself.
+/// The definitions that a formula uses directly.
 fn references(formula: &Formula, found: &mut BTreeMap<usize, Arc<Definition>>) {
     match formula {
         Formula::Rational(_) | Formula::Pi | Formula::Arctangent(_) | Formula::Root(Root::Integer(_)) => {}
@@ -223,23 +223,23 @@ fn references_of(formula: &Formula) -> Vec<Arc<Definition>> {
     found.into_values().collect()
 }
 
-/// The formula with hashes in the places of names, so that neither the names nor other definitions enter.
+/// The formula with hashes in place of names, so that it depends neither on names nor on other definitions.
 pub fn spelled(formula: &Formula) -> String {
-    // The last first: `k1` begins `k12`.
+    // From the last to the first, because `k1` is a prefix of `k12`.
     references_of(formula)
         .iter()
         .rev()
         .fold(formula.to_string(), |text, definition| text.replace(&definition.name(), &format!("[{}]", definition.hash)))
 }
 
-/// The definitions that formulas refer to, themselves or by others, in the order of the list.
+/// The definitions that formulas use, directly or indirectly, in the order of the list.
 pub fn of<'a>(formulas: impl IntoIterator<Item = &'a Formula>) -> Vec<Arc<Definition>> {
     let mut first = BTreeMap::new();
     formulas.into_iter().for_each(|formula| references(formula, &mut first));
     reachable(first.into_values().collect(), |_| false)
 }
 
-/// These definitions and all that they refer to, in the order of the list, without those that are `known` and what these refer to.
+/// These definitions and all that they use, in the order of the list, without `known` definitions and their own definitions.
 fn reachable(mut stack: Vec<Arc<Definition>>, known: impl Fn(&Definition) -> bool) -> Vec<Arc<Definition>> {
     let mut found = BTreeMap::new();
     while let Some(definition) = stack.pop() {
@@ -268,14 +268,14 @@ impl<E: Clone> Clone for Defined<E> {
 }
 
 impl<E> Defined<E> {
-    /// A value is put in whole: what another thread has left is right.
+    /// Each value is inserted atomically, so the map is valid even after another thread's panic.
     fn values(&self) -> MutexGuard<'_, BTreeMap<usize, Option<E>>> {
         self.0.lock().unwrap_or_else(PoisonError::into_inner)
     }
 }
 
 impl<E: Clone> Defined<E> {
-    /// The value of a definition; `of` gives that of a formula.
+    /// The value of a definition; `of` computes that of a formula.
     pub(super) fn get(&self, definition: &Arc<Definition>, of: impl Fn(&Formula) -> Option<E>) -> Option<E> {
         let known = |index: usize| self.values().get(&index).cloned();
         if let Some(value) = known(definition.index) {
@@ -350,7 +350,7 @@ mod tests {
 
     #[test]
     fn graphs_of_no_robot_are_refused() {
-        // Each the square of the one before; and a chain that is too deep to walk down.
+        // First, each is the square of the previous; then a chain too deep for recursion.
         let mut definitions = list(&["sqrt(2) + 1"]).expect("a definition");
         let wrong = (1..100).find_map(|n| definitions.define(n, &format!("k{0}*k{0}", n - 1)).err()).expect("an end");
         assert!(wrong.contains("too large"), "{wrong}");

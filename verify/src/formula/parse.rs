@@ -1,4 +1,4 @@
-//! Reading formulas.
+//! Parses formulas.
 //!
 //! ```text
 //! sum = [-] product { (+|-) product }    product = power { (*|/) power }    power = primary [ ^ integer | ^( integer ) ]
@@ -17,28 +17,28 @@ const LONGEST: usize = 200_000;
 const DEEPEST: usize = 64;
 const LARGEST_POWER: i32 = 400;
 
-/// Bits of a power.
+/// Maximum number of bits of a power.
 const LARGEST_BITS: usize = 1 << 14;
 
-/// What formulas cost, in nanoseconds: reading, enclosing to some hundred bits, evaluating in some fields.
+/// Cost estimates in nanoseconds: parsing, enclosure to some hundred bits, evaluation in some fields.
 const WORK_OF_PRIMARY: u64 = 500;
 const WORK_OF_FACTOR: u64 = 5_000;
 const WORK_OF_WAVE: u64 = 30_000;
-/// For each 64 bits of an integer: the trial division by primes.
+/// Per 64 bits of an integer: trial division by primes.
 const WORK_OF_ROOT: u64 = 20_000;
 
-/// The length of a fraction, in words of 64 bits.
+/// The length of a fraction, in 64-bit words.
 fn words(value: &Rational) -> u64 {
     (value.numerator().bit_len() + value.denominator().bit_len()) as u64 / 64 + 1
 }
 
 impl Formula {
-    /// Reads a formula without names.
+    /// Parses a formula without names.
     pub fn parse(text: &str) -> Result<Formula, String> {
         Formula::parse_with(text, &Definitions::default())
     }
 
-    /// Reads a formula that may refer to definitions.
+    /// Parses a formula that may use definitions.
     pub fn parse_with(text: &str, definitions: &Definitions) -> Result<Formula, String> {
         if text.len() > LONGEST {
             return Err(format!("a formula of {} characters is longer than any constant of a robot", text.len()));
@@ -113,11 +113,11 @@ impl Parser<'_> {
         if terms.len() == 1 {
             return Ok(terms.remove(0));
         }
-        // A sum in parentheses is terms of this one.
+        // The terms of a sum in parentheses become terms of this sum.
         Ok(Formula::Sum(terms.iter().flat_map(Formula::terms).cloned().collect()))
     }
 
-    /// Counts the work of a product or a sum of numbers of so many words.
+    /// Charges the work of a product or a sum of numbers with these lengths in words.
     fn charge_words(&self, words: &[u64]) -> Result<(), String> {
         let all: u64 = words.iter().sum();
         self.definitions.charge(all.saturating_mul(all))
@@ -141,7 +141,7 @@ impl Parser<'_> {
         if factors.len() == 1 {
             return Ok(factors.remove(0));
         }
-        // The fractions and the numbers under roots are multiplied.
+        // Fractions and radicands are multiplied.
         let mut all = 0;
         for factor in &factors {
             let parts = if let Formula::Product(parts) = factor { parts.as_slice() } else { std::slice::from_ref(factor) };
@@ -261,7 +261,7 @@ impl Parser<'_> {
     }
 }
 
-/// The exact value of a decimal literal as it stands in the text.
+/// The exact value of a decimal literal.
 pub fn decimal(text: &str) -> Result<Formula, String> {
     let mut parser = Parser { rest: text, depth: 0, definitions: &Definitions::default() };
     let value = parser.decimal()?;

@@ -1,7 +1,7 @@
-//! The certificate beside a module of inverse kinematics, `robot_ik.cert.json`: what was verified of which texts, and the exact values of the loop's
+//! The certificate of a module of inverse kinematics, `robot_ik.cert.json`: the verified facts and texts, and the exact values of the loop's
 //! numbers.
 //!
-//! Everything in it follows from the two texts, so a certificate is right if verifying them again gives the same one.
+//! It follows entirely from the two texts, so a certificate is correct if a new verification gives the same one.
 
 use serde_derive::Serialize;
 
@@ -18,16 +18,16 @@ struct Certificate<'a> {
     output: Hash<'a>,
     verified: bool,
     faults: &'a [String],
-    /// At most so many solutions, as the module says.
+    /// Maximum number of solutions, according to the module.
     most: usize,
-    /// The numbers of the loop, in the order of the text, exactly.
+    /// The exact values of the loop's numbers, in the order of the text.
     exact_values: &'a [String],
-    /// Branches that close the loop in prime fields; none where the construction is no closed form.
+    /// Number of branches that close the loop in prime fields; `None` without a closed form.
     sound_branches: Option<usize>,
-    /// Solutions at random poses of prime fields, and the loop that they were counted with.
+    /// Number of solutions at random poses of prime fields, and the loop that counted them.
     generic: Option<Generic<'a>>,
     rational_poses: Poses,
-    /// Why nothing was counted, where that is so.
+    /// The reason why nothing was counted, if so.
     uncounted: Option<&'a str>,
 }
 
@@ -42,18 +42,18 @@ struct Generic<'a> {
     order: &'a [usize],
 }
 
-/// Rational poses, counted by Sturm's theorem.
+/// Counts of rational poses, by Sturm's theorem.
 #[derive(Serialize)]
 struct Poses {
-    /// The module returns as many solutions as there are.
+    /// The module returns all solutions.
     equal: usize,
-    /// Of these, without a solution.
+    /// Of these, poses without a solution.
     unreachable: usize,
-    /// The module says that it does not know.
+    /// The module reports uncertainty.
     near: usize,
-    /// Of these, rightly.
+    /// Of these, poses with coincident solutions.
     singular: usize,
-    /// Not counted: a joint may be free.
+    /// Not counted, because a joint may be free.
     undecided: usize,
 }
 

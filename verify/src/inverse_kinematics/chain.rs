@@ -1,4 +1,4 @@
-//! An arm as links between joints, over a prime: T = L0 J1 L1 ... Jn Ln.
+//! An arm as a chain of links and joints over a prime field: T = L0 J1 L1 ... Jn Ln.
 
 use armgen_description::kinds::Target;
 use armgen_description::manipulator::Manipulator;
@@ -20,13 +20,13 @@ pub(super) struct Chain {
     pub(super) slides: Vec<bool>,
     /// Unit vectors of the axes.
     pub(super) axes: Vec<[u64; 3]>,
-    /// One more than joints.
+    /// The links, one more than the joints.
     pub(super) links: Vec<Frame>,
 }
 
 impl Chain {
-    /// The arm of a description with its nominal lengths; where the target is a position and a direction, with a turn about the z axis of the end
-    /// effector behind it, which does not change them.
+    /// The arm of a description with its nominal lengths. If the target is a position and a direction, a final rotation about the z axis of the end
+    /// effector follows, which leaves both unchanged.
     pub(super) fn of(manipulator: &Manipulator, field: &Prime) -> Option<Chain> {
         let arm = Arm::nominal(field, manipulator).and_then(|nominal| Arm::new(field, manipulator, &nominal))?;
         let modulus = Modulus::new(field.prime());
@@ -57,7 +57,7 @@ impl Chain {
         Some(Chain { modulus, slides, axes, links })
     }
 
-    /// Without a joint, which is at a value.
+    /// The chain with a joint fixed at a value.
     pub(super) fn without(&self, joint: usize, value: [u64; 2]) -> Chain {
         let m = self.modulus;
         let mut rest = self.clone();
@@ -73,7 +73,7 @@ impl Chain {
         self.slides.len()
     }
 
-    /// From the end effector to the base.
+    /// The reversed chain, from the end effector to the base.
     pub(super) fn reversed(&self) -> Chain {
         let m = self.modulus;
         Chain {

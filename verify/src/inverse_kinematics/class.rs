@@ -1,10 +1,10 @@
-//! Whether a construction may be called with a loop: what the documentation of the building blocks asks for, entry by entry.
+//! Whether a loop meets the conditions of a construction, which the documentation of the building blocks lists entry by entry.
 
 use super::modular::Frame;
 use super::points::Loop;
 use super::text::{Arrangement, Construction};
 
-/// Entries of a frame that are 0, as seen in a prime field.
+/// A frame with the test for zeros among its entries, as seen in a prime field.
 struct Link<'a> {
     frame: &'a Frame,
     one: u64,
@@ -31,8 +31,8 @@ impl Link<'_> {
     }
 }
 
-/// The most solutions of a case of block 6 for joints of these kinds with links A and B, or what is wrong. A link that is not `constant` is that of
-/// the pose or of the joint that is given, at a random value.
+/// The maximum number of solutions of a case of block 6, for joints of these kinds with links A and B; or the fault. A link that is not
+/// `constant` belongs to the pose or to the given joint, at a random value.
 fn regional(case: &str, kinds: &[bool], [a, b]: [&Frame; 2], closed: &Loop, constant: [bool; 2]) -> Result<usize, String> {
     let link = |frame| Link { frame, one: closed.modulus.one };
     let product = closed.modulus.compose(a, b);
@@ -61,7 +61,7 @@ fn regional(case: &str, kinds: &[bool], [a, b]: [&Frame; 2], closed: &Loop, cons
         "regional_slides" => ([true; 3], determinant != 0, 1),
         other => return Err(format!("there is no construction `{other}`")),
     };
-    // Between two turns a constant link is in its normal form; another is whatever it is.
+    // Between two revolute joints a constant link has its normal form; other links are arbitrary.
     let normal =
         (!constant[0] || kinds[0] || kinds[1] || a.is_normal()) && (!constant[1] || kinds[1] || kinds[2] || b.is_normal());
     if kinds == wanted && holds && normal {
@@ -71,13 +71,13 @@ fn regional(case: &str, kinds: &[bool], [a, b]: [&Frame; 2], closed: &Loop, cons
     }
 }
 
-/// Cases that leave digits to Newton's method.
+/// Cases with reduced accuracy, which Newton's method improves.
 fn is_rough(case: &str) -> bool {
     matches!(case, "regional_general" | "regional_slide" | "regional_mid_slide")
 }
 
-/// The most solutions of a construction with this loop, or why it may not be called with it. `refined`: its solutions are brought to the last
-/// digits later.
+/// The maximum number of solutions of a construction with this loop, or the violated condition. `refined`: a later step improves the solutions
+/// to the last digits.
 pub(super) fn most(construction: &Construction, way: &Arrangement, closed: &Loop, refined: bool) -> Result<usize, String> {
     let asked = Asked { way, closed, joints: way.order.len() };
     match construction {
@@ -93,7 +93,7 @@ pub(super) fn most(construction: &Construction, way: &Arrangement, closed: &Loop
     .map_err(|what| format!("the class is wrong: {what}"))
 }
 
-/// The loop that a construction is called with: one method for each construction, its most solutions or what is wrong.
+/// The loop of a construction. Each construction has a method that returns its maximum number of solutions, or the fault.
 struct Asked<'a> {
     way: &'a Arrangement,
     closed: &'a Loop,
@@ -105,19 +105,19 @@ impl Asked<'_> {
         Link { frame: &self.closed.links[place], one: self.closed.modulus.one }
     }
 
-    /// Whether the axes on both sides of a link meet in one point.
+    /// Whether the axes on both sides of a link intersect in a single point.
     fn crosses(&self, place: usize) -> bool {
         self.link(place).is_normal() && self.link(place).meets() && !self.link(place).is_parallel()
     }
 
-    /// Whether the rotation between the joints that turn at two places is one about x.
+    /// Whether the rotation between the revolute joints at two places is about x.
     fn is_about_x(&self, from: usize, to: usize) -> bool {
         let modulus = &self.closed.modulus;
         let [x, y, z] = self.closed.links[from..to].iter().fold(modulus.identity(), |f, g| modulus.compose(&f, g));
         x[..3] == [modulus.one, 0, 0] && y[0] == 0 && z[0] == 0 && z[1] != 0
     }
 
-    /// The places of the joints of a kind, from the loop's `from`-th on.
+    /// The places of the joints of a kind, starting at `from`.
     fn places(&self, from: usize, prismatic: bool) -> Vec<usize> {
         (from..self.joints).filter(|place| self.way.prismatic[*place] == prismatic).collect()
     }
@@ -232,7 +232,7 @@ impl Asked<'_> {
     }
 }
 
-/// Whether Newton's method is called where it should be.
+/// Checks that Newton's method is called exactly where needed.
 fn polishes(polished: bool, wanted: bool) -> Result<(), String> {
     if polished == wanted {
         Ok(())

@@ -1,4 +1,4 @@
-//! How many solutions there are: at random poses in prime fields, and, real ones, at rational poses.
+//! Counts solutions: at random poses in prime fields, and real ones at rational poses.
 
 use dashu_int::IBig;
 
@@ -15,23 +15,23 @@ use crate::formula::{Formula, Rational};
 use crate::stream::Stream;
 use armgen_description::manipulator::Manipulator;
 
-/// A way round the loop: from which joint on, and whether backwards.
+/// A traversal of the loop: its first joint and its direction.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct Way {
     pub(super) start: usize,
     pub(super) backward: bool,
-    /// The target is a point.
+    /// Whether the target is a point.
     pub(super) point: bool,
 }
 
-/// Bounds on the degrees of products, and of what is kept of them.
+/// Degree bounds of products, and of the part that is kept.
 type Shape = (Vec<u8>, Vec<u8>);
 
-/// The combination of sines, cosines and slides whose minimal polynomial is taken: any that separates the solutions will do.
+/// The combination of sines, cosines and slides whose minimal polynomial is computed; it only has to separate the solutions.
 const COMBINATION: [i64; 8] = [1, 3, -2, 5, 4, -7, 6, -1];
 
 impl Way {
-    /// The arrangements that an arm has.
+    /// All traversals for an arm.
     pub(super) fn all(joints: usize, point: bool) -> Vec<Way> {
         let backward: &[bool] = if point { &[false] } else { &[false, true] };
         let starts = if point { 1 } else { joints };
@@ -53,12 +53,12 @@ impl Way {
     }
 }
 
-/// Shapes in which the number of solutions comes out with a criterion.
+/// Shapes that give the number of solutions with a criterion of correctness.
 fn exact_shapes(places: usize) -> Vec<Shape> {
     [(2, 2), (3, 2), (3, 3), (4, 3)].map(|(bound, kept)| (vec![bound; places], vec![kept; places])).to_vec()
 }
 
-/// Shapes that are smaller, and give the same number.
+/// Smaller shapes that give the same number.
 fn small_shapes(places: usize) -> Vec<Shape> {
     let mut shapes = vec![(vec![2; places], vec![2; places])];
     for place in 0..places {
@@ -81,16 +81,16 @@ pub(super) struct Generic {
     pub(super) solutions: usize,
     pub(super) way: Way,
     shape: Shape,
-    /// The joint whose value is given.
+    /// The given joint, whose value is an input.
     given: Option<usize>,
 }
 
-/// The arm without the joint that is given.
+/// The arm without the given joint.
 fn others(chain: &Chain, given: Option<usize>, posture: &[[u64; 2]]) -> Chain {
     given.map_or_else(|| chain.clone(), |joint| chain.without(joint, posture[joint]))
 }
 
-/// The number of solutions at random poses of two prime fields, by the first of the ways in which it comes out.
+/// The number of solutions at random poses of two prime fields, by the first traversal that determines it.
 pub(super) fn generic(
     manipulator: &Manipulator,
     constants: &Constants,
@@ -110,7 +110,7 @@ pub(super) fn generic(
         let Some(systems) = systems else { continue };
         let modulus = |i: usize| points[i].0.modulus;
         let Some(solutions) = exact(modulus(0), &systems[0]).map(|quotient| quotient.dimension) else { continue };
-        // The smaller shapes are for the many primes of an exact count; the number is that of the criterion.
+        // Exact counts need many primes, so the smaller shapes serve them; the criterion gives the number.
         let small = small_shapes(systems[0].slides.len()).into_iter().find(|(bound, kept)| {
             let quotient = Quotient::of(modulus(0), &systems[0], bound, kept, None);
             quotient.is_some_and(|q| q.dimension == solutions && q.minimal_polynomial(&COMBINATION).len() == solutions)
@@ -128,15 +128,15 @@ pub(super) fn generic(
 /// A rational pose.
 #[derive(Clone, Debug)]
 pub(super) struct RationalPose {
-    /// Numerators and denominators of the tangents of half the angles, or of the slides.
+    /// Numerators and denominators of the half-angle tangents, or of the slides.
     pub(super) values: Vec<(i64, i64)>,
-    /// The end effector is moved by so many metres along each axis, out of reach.
+    /// Displacement of the end effector along each axis, m, to put it out of reach.
     pub(super) away: i64,
 }
 
 impl RationalPose {
-    /// Poses that random postures reach, every fourth with joints at 0, half turns and the like, every eighth out of reach; of arms with `few` joints
-    /// another eighth beside a pose that they reach.
+    /// Poses of random postures. Every fourth has special joint values such as 0 and half turns, every eighth is out of reach. Arms with `few`
+    /// joints have another eighth near a reachable pose.
     pub(super) fn some(joints: usize, count: usize, (length, few): (f64, bool), stream: &mut Stream) -> Vec<RationalPose> {
         let mut poses = Vec::new();
         for number in 0..count {
@@ -158,7 +158,7 @@ impl RationalPose {
         poses
     }
 
-    /// The arm without what is given, and the pose.
+    /// The arm without the given joint, and the pose.
     fn modular(&self, chain: &Chain, given: Option<usize>) -> (Chain, Frame) {
         let m = chain.modulus;
         let value = |(slides, (n, d)): (&bool, &(i64, i64))| {
@@ -178,7 +178,7 @@ impl RationalPose {
         (others(chain, given, &values), pose)
     }
 
-    /// The pose exactly.
+    /// The exact pose.
     pub(super) fn exact(&self, constants: &Constants) -> [[Formula; 4]; 3] {
         let arm = &constants.arm;
         let number = |x: Rational| Formula::Rational(x);
@@ -212,16 +212,16 @@ impl RationalPose {
     }
 }
 
-/// What is proved of a pose.
+/// The proved count for a pose.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Count {
-    /// The solutions are finitely many.
+    /// There are finitely many solutions.
     Finite(Roots),
-    /// That is not known: they may not be, or some have moved to where no angle is.
+    /// Unknown: there may be infinitely many, or some have moved to infinity, where no angle is.
     Undecided,
 }
 
-/// The arm in as many prime fields as have been needed so far.
+/// The arm in as many prime fields as needed so far.
 pub(super) struct Counter<'a> {
     manipulator: &'a Manipulator,
     constants: &'a Constants,
@@ -230,7 +230,7 @@ pub(super) struct Counter<'a> {
     chains: Vec<Chain>,
 }
 
-/// So many primes of 62 bits are tried at a pose.
+/// Maximum number of primes of 62 bits for a pose.
 const MOST_PRIMES: usize = 400;
 
 impl<'a> Counter<'a> {
@@ -241,13 +241,13 @@ impl<'a> Counter<'a> {
     fn chain(&mut self, number: usize) -> Result<&Chain, String> {
         while self.chains.len() <= number {
             let field = self.constants.field(&mut self.stream)?;
-            // A prime that divides a denominator is passed over.
+            // A prime that divides a denominator is skipped.
             self.chains.extend(Chain::of(self.manipulator, &field));
         }
         Ok(&self.chains[number])
     }
 
-    /// The solutions at a pose of an arm whose constants are fractions.
+    /// The solutions at a pose of an arm with rational constants.
     pub(super) fn at(&mut self, pose: &RationalPose) -> Result<Count, String> {
         let (way, mut shape, mut solutions) = (self.generic.way, self.generic.shape.clone(), self.generic.solutions);
         let given = self.generic.given;
@@ -290,7 +290,7 @@ impl<'a> Counter<'a> {
             taken += 1;
             found = if taken % 4 == 0 { residues.fractions() } else { None };
         }
-        // The numbers of the arm are so long that more primes would be needed.
+        // The numbers of the arm are so long that they need more primes.
         Ok(Count::Undecided)
     }
 }

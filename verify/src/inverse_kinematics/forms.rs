@@ -1,23 +1,24 @@
 //! Equations for the joint variables at a pose, as polynomials in (1, c, s) of each revolute and (1, d, d²) of each prismatic joint.
 //!
-//! The last axis of the loop, a point p on it and its direction l, seen from before and from behind the first joints, gives fourteen equations
-//! (Raghavan, Roth 1993); every arrangement in which the last joint turns will do. The products of the first joints' variables are eliminated;
-//! that they are products, and their variables points of the circle, is kept as equations of degree 2. What is left has the solutions of
-//! the loop and no others: the first joints are linear functions of the others, and the last one is the turn that is missing.
+//! Consider the last axis of the loop, with a point p on it and its direction l. Expressed from both sides of the first joints, it gives
+//! fourteen equations (Raghavan, Roth 1993), in every arrangement whose last joint is revolute. Elimination removes the products of the first
+//! joints' variables. Equations of degree 2 still express that these are products, and that their variables are points of the circle. The
+//! result has exactly the solutions of the loop: the first joints are linear functions of the others, and the last joint is the remaining
+//! rotation.
 
 use super::chain::Chain;
 use super::modular::{Frame, Modulus};
 use super::polynomials::{product as product_of, sum as sum_of, Polynomial};
 
-/// Equations for some joints of an arm, which determine the others.
+/// Equations for some joints of an arm; these joints determine the others.
 #[derive(Clone, Debug)]
 pub(super) struct System {
-    /// Whether the joints slide.
+    /// Whether each joint is prismatic.
     pub(super) slides: Vec<bool>,
     pub(super) equations: Vec<Polynomial>,
 }
 
-/// Where a function of (1, c, s) or (1, d, d²) is looked at.
+/// Sample points of a function of (1, c, s) or (1, d, d²).
 fn points(m: Modulus, slides: bool) -> [[u64; 2]; 3] {
     let (l, minus) = (m.one, m.negated(m.one));
     if slides {
@@ -27,7 +28,7 @@ fn points(m: Modulus, slides: bool) -> [[u64; 2]; 3] {
     }
 }
 
-/// Coefficients from values at all combinations of points, the first place slowest.
+/// Coefficients from the values at all combinations of sample points, with the first place varying slowest.
 fn interpolated(m: Modulus, slides: &[bool], mut values: Vec<u64>) -> Vec<u64> {
     let half = m.inverse(m.integer(2));
     let mut stride = values.len();
@@ -52,7 +53,7 @@ fn interpolated(m: Modulus, slides: &[bool], mut values: Vec<u64>) -> Vec<u64> {
     values
 }
 
-/// Number `index` written with digits 0, 1, 2.
+/// The number `index` in base 3.
 fn digits(mut index: usize, places: usize) -> Vec<u8> {
     let mut digits = vec![0; places];
     for digit in digits.iter_mut().rev() {
@@ -67,7 +68,7 @@ fn polynomial(places: usize, coefficients: &[u64], degree: u8) -> Polynomial {
     Polynomial { terms: terms.map(|(i, c)| (digits(i, places), *c)).collect(), degree }
 }
 
-/// Values of a function of some joints' values at all combinations of points, one list for each of its entries.
+/// Values of a function at all combinations of sample points, in a list per entry.
 fn sampled<const N: usize>(m: Modulus, slides: &[bool], f: impl Fn(&[[u64; 2]]) -> [u64; N]) -> [Vec<u64>; N] {
     let count = 3usize.pow(slides.len() as u32);
     let mut values = [(); N].map(|()| Vec::with_capacity(count));
@@ -97,7 +98,7 @@ fn of_line(m: Modulus, p: [u64; 3], l: [u64; 3]) -> [u64; 14] {
     all
 }
 
-/// Slides alone: the entries of the pose are linear in them.
+/// Prismatic joints only: the entries of the pose are linear in them.
 fn of_slides(chain: &Chain, pose: &Frame) -> System {
     let m = chain.modulus;
     let entries = sampled::<12>(m, &chain.slides, |at| {
@@ -109,8 +110,9 @@ fn of_slides(chain: &Chain, pose: &Frame) -> System {
     System { slides: chain.slides.clone(), equations }
 }
 
-/// The loop read from `start` on, its first joints (two of six, none of one, else one) eliminated with the last one, which has to turn; with a point as the
-/// target, of which nothing turns, none but the first. `None` if the products of the first joints' variables are not determined.
+/// The equations of the loop that starts at `start`. Elimination removes its first joints (two of six, zero of one, otherwise one) and the last
+/// one, which has to be revolute. For a point as the target, which has no rotation, it removes only the first joint. `None` if the products of
+/// the first joints' variables are not determined.
 pub(super) fn of_loop(chain: &Chain, pose: &Frame, start: usize, point: bool) -> Option<System> {
     if !point && chain.slides.iter().all(|slides| *slides) {
         return Some(of_slides(chain, pose));
@@ -131,7 +133,7 @@ pub(super) fn of_loop(chain: &Chain, pose: &Frame, start: usize, point: bool) ->
     let link = |place: usize| if joint(place) == n - 1 { closing } else { chain.links[joint(place) + 1] };
     let moved = |place: usize, value: [u64; 2]| m.joint(chain.slides[joint(place)], chain.axes[joint(place)], value);
     let slides = |from: usize, to: usize| -> Vec<bool> { (from..to).map(|place| chain.slides[joint(place)]).collect() };
-    // Of the last axis in a frame: the line that all turns about it leave. Of a point: itself.
+    // The last axis in a frame: the line that all rotations about it preserve. For a point: the point.
     let direction = chain.axes[joint(n - 1)];
     let line = |f: &Frame| {
         let p = [f[0][3], f[1][3], f[2][3]];
@@ -142,7 +144,7 @@ pub(super) fn of_loop(chain: &Chain, pose: &Frame, start: usize, point: bool) ->
         let steps = at.iter().enumerate().map(|(i, value)| m.compose(&moved(from + i, *value), &link(from + i)));
         steps.reduce(|f, g| m.compose(&f, &g)).unwrap_or(m.identity())
     };
-    // A point is seen from the base: there the loop begins, and it is open behind the last joint.
+    // A point is seen from the base: the loop begins there, and is open after the last joint.
     let (left_slides, right_slides) = (slides(first, last), slides(0, first));
     let left = sampled::<14>(m, &left_slides, |at| {
         let chain_of = all(first, at);
@@ -156,7 +158,7 @@ pub(super) fn of_loop(chain: &Chain, pose: &Frame, start: usize, point: bool) ->
             m.inverse_frame(&m.compose(&link(n - 1), &both))
         })
     });
-    // 0 = right - left: columns of the products, then those of the other joints with the constant.
+    // 0 = right - left: first the columns of products, then those of the other joints with the constant.
     let products = right[0].len() - 1;
     let mut rows: Vec<Vec<u64>> = (0..14)
         .map(|k| {
@@ -182,7 +184,7 @@ pub(super) fn of_loop(chain: &Chain, pose: &Frame, start: usize, point: bool) ->
     let places = left_slides.len();
     let mut equations: Vec<Polynomial> = rows[products..].iter().map(|row| polynomial(places, &row[products..], 1)).collect();
     equations.retain(|equation| !equation.terms.is_empty());
-    // The product of a number as a polynomial of the other joints.
+    // Product number k as a polynomial in the other joints.
     let product = |k: usize| -> Polynomial {
         match k {
             0 => Polynomial { terms: vec![(vec![0; places], m.one)], degree: 1 },

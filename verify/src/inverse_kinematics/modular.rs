@@ -1,6 +1,6 @@
-//! Rigid displacements over integers modulo a prime, fast: products by Montgomery's method (1985), a is kept as a 2^64 mod p.
+//! Rigid displacements over integers modulo a prime, with Montgomery multiplication (1985): a is stored as a 2^64 mod p.
 
-/// A prime below 2^63 and what products modulo it need.
+/// A prime below 2^63 with the constants for products modulo it.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Modulus {
     pub(super) prime: u64,
@@ -11,12 +11,12 @@ pub(super) struct Modulus {
     pub(super) one: u64,
 }
 
-/// A displacement x -> R x + t: rows of (R | t).
+/// A displacement x -> R x + t, stored as the rows of (R | t).
 pub(super) type Frame = [[u64; 4]; 3];
 
 impl Modulus {
     pub(super) fn new(prime: u64) -> Modulus {
-        // Each step doubles the bits that are right, 3 at first.
+        // Each step doubles the number of correct bits, initially 3.
         let mut inverse = prime;
         for _ in 0..5 {
             inverse = inverse.wrapping_mul(2u64.wrapping_sub(prime.wrapping_mul(inverse)));
@@ -61,7 +61,7 @@ impl Modulus {
         self.minus(0, a)
     }
 
-    /// The element of a representative.
+    /// The element with this representative.
     pub(super) fn of(self, value: u64) -> u64 {
         self.times(value % self.prime, self.square)
     }
@@ -80,7 +80,7 @@ impl Modulus {
         }
     }
 
-    /// 1/a; 0 of 0.
+    /// 1/a; 0 for a = 0.
     pub(super) fn inverse(self, a: u64) -> u64 {
         self.power(a, self.prime - 2)
     }
@@ -98,7 +98,7 @@ impl Modulus {
         result
     }
 
-    /// row += factor other, from a column on.
+    /// row += factor · other, up to the length of the shorter.
     pub(super) fn add_multiple(self, row: &mut [u64], factor: u64, other: &[u64]) {
         for (x, y) in row.iter_mut().zip(other) {
             *x = self.plus(*x, self.times(factor, *y));
@@ -118,7 +118,7 @@ impl Modulus {
         [[l, o, o, o], [o, l, o, o], [o, o, l, o]]
     }
 
-    /// First `g`, then `f`.
+    /// The composition: first `g`, then `f`.
     pub(super) fn compose(self, f: &Frame, g: &Frame) -> Frame {
         f.map(|row| {
             std::array::from_fn(|j| {

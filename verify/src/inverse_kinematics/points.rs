@@ -1,4 +1,4 @@
-//! An arm's constants in prime fields, and what the text claims of its loop.
+//! The constants of an arm in prime fields, and the claims of the text about its loop.
 
 use std::cell::RefCell;
 
@@ -16,7 +16,7 @@ use crate::equations::arm::Arm;
 use crate::formula::{Atoms, Dependent, Formula};
 use crate::stream::Stream;
 
-/// The description's numbers as formulas, and the roots and angles in them.
+/// The description's numbers as formulas, with their roots and angles.
 pub(super) struct Constants {
     pub(super) arm: Arm<Formula>,
     atoms: Atoms,
@@ -24,7 +24,7 @@ pub(super) struct Constants {
 }
 
 impl Constants {
-    /// Of an arm without bodies, and others.
+    /// The constants of an arm without bodies, together with `others`.
     pub(super) fn of(manipulator: &Manipulator, others: &[Formula]) -> Result<Constants, String> {
         let arm = Arm::nominal(&Plain, manipulator).and_then(|nominal| Arm::new(&Plain, manipulator, &nominal));
         let arm = arm.ok_or("the description divides by zero")?;
@@ -38,7 +38,7 @@ impl Constants {
         Ok(Constants { arm, atoms, dependent })
     }
 
-    /// Whether there are no roots, no angles and no pi.
+    /// Whether all constants are rational: no roots, angles or pi.
     pub(super) fn are_fractions(&self) -> bool {
         self.atoms.roots.is_empty() && self.atoms.angles.is_empty()
     }
@@ -49,7 +49,7 @@ impl Constants {
     }
 }
 
-/// The arm and nothing that has mass: no solution depends on bodies, whose formulas can be long.
+/// The arm without masses: no solution depends on bodies, whose formulas can be long.
 pub(super) fn without_bodies(manipulator: &Manipulator) -> Manipulator {
     let mut arm = manipulator.clone();
     arm.payload = None;
@@ -78,7 +78,7 @@ pub(super) fn posture(chain: &Chain, field: &mut Prime) -> Vec<[u64; 2]> {
     chain.slides.iter().map(&mut value).collect()
 }
 
-/// The link that a given joint moves: its frames are claimed.
+/// The link that a given joint moves, from the claimed frames.
 pub(super) fn link(given: &Given, numbers: &[Formula], field: &Prime, value: [u64; 2]) -> Option<Frame> {
     let m = Modulus::new(field.prime());
     let numbers: Option<Vec<u64>> = numbers.iter().map(|x| Some(m.of(field.constant(x)?.value()))).collect();
@@ -88,7 +88,7 @@ pub(super) fn link(given: &Given, numbers: &[Formula], field: &Prime, value: [u6
     Some(m.compose(&m.compose(&frame(0), &moved), &frame(12)))
 }
 
-/// The pose that the other joints have to reach where a joint at an end of the arm has a value.
+/// The pose that the other joints have to reach if a joint at an end of the arm has this value.
 pub(super) fn rest(given: &Given, link: &Frame, m: Modulus, pose: &Frame) -> Frame {
     let back = m.inverse_frame(link);
     if given.joint == 0 {
@@ -98,7 +98,7 @@ pub(super) fn rest(given: &Given, link: &Frame, m: Modulus, pose: &Frame) -> Fra
     }
 }
 
-/// Where a displacement takes a point.
+/// The image of a point under a displacement.
 fn image(m: Modulus, f: &Frame, point: [u64; 3]) -> [u64; 3] {
     f.map(|row| m.plus(m.dot([row[0], row[1], row[2]], point), row[3]))
 }
@@ -114,7 +114,7 @@ pub(super) struct Loop {
 }
 
 impl Loop {
-    /// Of the exact numbers of a text's loop, in their order.
+    /// The loop with the exact numbers of its text, in order.
     pub(super) fn of(way: &Arrangement, numbers: &[Formula], field: &Prime) -> Option<Loop> {
         let modulus = Modulus::new(field.prime());
         let numbers: Option<Vec<u64>> = numbers.iter().map(|x| Some(modulus.of(field.constant(x)?.value()))).collect();
@@ -131,12 +131,12 @@ impl Loop {
         })
     }
 
-    /// Whether J1 L1 ... Jn Ln = 1 at a posture of the arm and its pose. Joints that the arm has not are at 0.
+    /// Whether J1 L1 ... Jn Ln = 1 at a posture of the arm and its pose. Joints that the arm lacks are at 0.
     pub(super) fn closes(&self, way: &Arrangement, kinds: &[bool], posture: &[[u64; 2]], pose: &Frame) -> bool {
         self.values(way, kinds, posture).is_some_and(|values| self.is_met(&way.prismatic, &self.links_at(way, pose), &values))
     }
 
-    /// The values of the loop's joints at a posture of the arm, with the joints that it has not at 0; none if the kinds are others.
+    /// The values of the loop's joints for a posture of the arm, with missing joints at 0; `None` if the joint types differ.
     pub(super) fn values(&self, way: &Arrangement, kinds: &[bool], posture: &[[u64; 2]]) -> Option<Vec<[u64; 2]>> {
         let m = self.modulus;
         let mut values = Vec::new();
@@ -157,7 +157,7 @@ impl Loop {
         Some(values)
     }
 
-    /// Whether the axes of the loop's joints are independent, as lines of motion, at values that close it: its solution there stands alone.
+    /// Whether the joint axes are linearly independent as screws at values that close the loop, so that the solution is isolated.
     pub(super) fn is_regular(&self, prismatic: &[bool], links: &[Frame], values: &[[u64; 2]]) -> bool {
         let m = self.modulus;
         let mut at = m.identity();
@@ -182,7 +182,7 @@ impl Loop {
         rank == prismatic.len()
     }
 
-    /// The links at a pose.
+    /// The links for a pose.
     pub(super) fn links_at(&self, way: &Arrangement, pose: &Frame) -> Vec<Frame> {
         let m = self.modulus;
         let x = if way.backward { *pose } else { m.inverse_frame(pose) };
@@ -199,7 +199,7 @@ impl Loop {
         })
     }
 
-    /// Whether J1 L1 ... Jn Ln = 1 for values of the loop's joints, with c² + s² = 1.
+    /// Whether J1 L1 ... Jn Ln = 1 for these joint values, with c² + s² = 1.
     pub(super) fn is_met(&self, prismatic: &[bool], links: &[Frame], values: &[[u64; 2]]) -> bool {
         self.are_values(prismatic, values) && self.chain(prismatic, links, values) == self.modulus.identity()
     }
@@ -210,7 +210,7 @@ impl Loop {
         prismatic.iter().zip(values).all(|(slides, value)| *slides || on_circle(value))
     }
 
-    /// Where three joints take a point that the third moves: J1 L1 J2 L2 J3.
+    /// The image of a point moved by three joints: J1 L1 J2 L2 J3.
     pub(super) fn moved(&self, prismatic: &[bool], links: &[Frame], values: &[[u64; 2]], point: [u64; 3]) -> Option<[u64; 3]> {
         let m = self.modulus;
         let links = [links[0], links[1], m.identity()];
@@ -218,7 +218,7 @@ impl Loop {
         self.are_values(prismatic, values).then(|| image(m, &chain, point))
     }
 
-    /// Of a position, which `tip` reaches: the point behind the third joint, and where it has to be as seen from before the first.
+    /// For a position that `tip` reaches: the point after the third joint, and its required place relative to the frame before the first.
     pub(super) fn points(&self, way: &Arrangement, pose: &Frame, tip: [u64; 3]) -> [[u64; 3]; 2] {
         let m = self.modulus;
         let position = pose.map(|row| row[3]);

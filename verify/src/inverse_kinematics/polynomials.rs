@@ -1,7 +1,7 @@
-//! Polynomials in c and s of turning and d of sliding joints.
+//! Polynomials in c and s of revolute joints and d of prismatic joints.
 //!
-//! Their basis in c and s with c² + s² = 1 is 1, c, s, c², c s, c³, c² s ..., by index; that in d its powers. The degree of index i is
-//! i/2, rounded up: d² counts as much as c and s.
+//! The basis in c and s with c² + s² = 1 is 1, c, s, c², c s, c³, c² s ..., by index; the basis in d consists of its powers. The degree of
+//! index i is i/2, rounded up: d² counts as much as c and s.
 
 use std::collections::BTreeMap;
 
@@ -11,11 +11,11 @@ use super::modular::Modulus;
 #[derive(Clone, Debug)]
 pub(super) struct Polynomial {
     pub(super) terms: Vec<(Vec<u8>, u64)>,
-    /// 1 or 2 in every place.
+    /// 1 or 2, for every place.
     pub(super) degree: u8,
 }
 
-/// c^k s^e of an index, e 0 or 1.
+/// The exponents k and e of c^k s^e for an index; e is 0 or 1.
 pub(super) fn power(index: u8) -> (u8, u8) {
     match (index, index % 2) {
         (0, _) => (0, 0),
@@ -32,7 +32,7 @@ fn index((k, e): (u8, u8)) -> u8 {
     }
 }
 
-/// The product of two elements of the basis in one joint: an element and perhaps another that is subtracted.
+/// The product of two basis elements in a joint: an element, and possibly another to subtract.
 fn multiplied(slides: bool, x: u8, y: u8) -> (u8, Option<u8>) {
     if slides {
         return (x + y, None);
@@ -59,7 +59,7 @@ pub(super) fn add_product(m: Modulus, slides: &[bool], x: &[u8], y: &[u8], facto
     }
 }
 
-/// x y, of two polynomials of degree 1.
+/// The product x y of two polynomials of degree 1.
 pub(super) fn product(m: Modulus, slides: &[bool], x: &Polynomial, y: &Polynomial) -> Polynomial {
     let mut sum = BTreeMap::<Vec<u8>, u64>::new();
     for (a, c) in &x.terms {
@@ -84,7 +84,7 @@ pub(super) fn sum(m: Modulus, x: Polynomial, y: Polynomial, minus: bool) -> Poly
     Polynomial { terms: sum.into_iter().filter(|(_, c)| *c != 0).collect(), degree }
 }
 
-/// c and s of each turning joint and d of each sliding one, as monomials.
+/// The monomials c and s of each revolute joint and d of each prismatic joint.
 pub(super) fn generators_of(slides: &[bool]) -> Vec<Vec<u8>> {
     let mut generators = Vec::new();
     for (place, slides_here) in slides.iter().enumerate() {

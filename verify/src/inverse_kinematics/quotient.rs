@@ -1,43 +1,43 @@
-//! The algebra of polynomials modulo the equations of a pose: its dimension is the number of solutions, complex ones and multiplicities counted.
+//! The quotient algebra of polynomials modulo the equations of a pose. Its dimension is the number of complex solutions with multiplicities.
 //!
-//! Isotropic points, 1 + tan² = 0, are at infinity in c and s and do not count. All products of the equations within a bound on the degree
-//! in each joint are eliminated, highest degrees first; monomials that are no pivot are a basis of the algebra, and every other monomial
-//! has a normal form in it. That the bound was high enough is seen by Mourrain's criterion (1999): the matrices that multiply by c, s or d
-//! exist, commute, and give every monomial its normal form. The dimension is then exact.
+//! Isotropic points, 1 + tan² = 0, are at infinity in c and s and do not count. Elimination covers all products of the equations up to a degree
+//! bound in each joint, highest degrees first. Monomials without a pivot form a basis of the algebra, and every other monomial has a normal
+//! form in it. Mourrain's criterion (1999) proves that the bound was high enough: the multiplication matrices of c, s and d exist, commute, and
+//! give every monomial its normal form. The dimension is then exact.
 
 use super::forms::System;
 use super::modular::Modulus;
 use super::polynomials::{add_product, generators_of, power};
 
-/// The algebra, and how its basis was found.
+/// The algebra, with the data that determined its basis.
 #[derive(Clone, Debug)]
 pub(super) struct Quotient {
     modulus: Modulus,
     /// Number of solutions.
     pub(super) dimension: usize,
-    /// Mourrain's criterion holds.
+    /// Whether Mourrain's criterion holds.
     pub(super) exact: bool,
-    /// The matrices of c and s of each turning joint and d of each sliding one: columns are the images of the basis.
+    /// The multiplication matrices of c and s of each revolute joint and d of each prismatic joint; columns are images of basis elements.
     generators: Vec<Option<Matrix>>,
     /// The normal form of 1.
     one: Vec<u64>,
-    /// The products that were independent: another prime needs no others.
+    /// The independent products; other primes need only these.
     pub(super) recipe: Vec<Step>,
 }
 
 /// Columns.
 type Matrix = Vec<Vec<u64>>;
 
-/// A product that is eliminated.
+/// A product in the elimination.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Step {
-    /// Of an equation with a monomial, by number.
+    /// The product of an equation and the monomial with this number.
     Equation(usize),
-    /// Of the row of a pivot with the generator of a number.
+    /// The product of a pivot's row and the generator with this number.
     Row(usize, usize),
 }
 
-/// Monomials of at most a degree in each place, in order of their number.
+/// Monomials up to a degree in each place, in order of their number.
 struct Monomials {
     sizes: Vec<usize>,
 }
@@ -67,8 +67,8 @@ impl Monomials {
 }
 
 impl Quotient {
-    /// The algebra of a system with products up to a degree in each joint; of `recipe`, where there is one, only those. `None`: the degree is
-    /// not high enough, or the solutions are not finitely many.
+    /// The algebra of a system with products up to a degree in each joint; with a `recipe`, only its products. `None` if the degree is too low or
+    /// there are infinitely many solutions.
     pub(super) fn of(m: Modulus, system: &System, bound: &[u8], region: &[u8], recipe: Option<&[Step]>) -> Option<Quotient> {
         let all = Monomials::new(bound);
         // Highest degrees first.
@@ -84,7 +84,7 @@ impl Quotient {
         }
         let width = order.len();
         let mut pivots: Vec<Option<Vec<u64>>> = vec![None; width];
-        // The row of a sum of monomials times another.
+        // The row of a sum of monomials, times another monomial.
         let multiple = |terms: &mut dyn Iterator<Item = (&[u8], u64)>, factor: &[u8]| {
             let mut row = vec![0; width];
             for (monomial, c) in terms {
@@ -113,7 +113,7 @@ impl Quotient {
                 }
             }
         }
-        // What has come out of a lower degree than the bound is multiplied again, until nothing new comes of it.
+        // Rows of a lower degree than the bound are multiplied again, until no new row arises.
         let monomials: Vec<Vec<u8>> = order.iter().map(|number| all.at(*number)).collect();
         let low = order.len()
             - order
@@ -201,7 +201,7 @@ impl Quotient {
         })
     }
 
-    /// Whether they give every monomial its normal form, c² + s² = 1 among them.
+    /// Whether the matrices give every monomial its normal form, including c² + s² = 1.
     fn gives<'a>(&self, slides: &[bool], all: &Monomials, normal: impl Fn(&[u8]) -> &'a Vec<u64>) -> bool {
         let mut first = 0;
         let mut matrices = Vec::new();
@@ -238,8 +238,8 @@ impl Quotient {
             })
     }
 
-    /// The minimal polynomial, monic, lowest coefficient first and the leading one left out, of the combination of c, s and d with the given
-    /// coefficients.
+    /// The minimal polynomial of the combination of c, s and d with these coefficients: monic, lowest coefficient first, without the leading
+    /// coefficient.
     pub(super) fn minimal_polynomial(&self, coefficients: &[i64]) -> Vec<u64> {
         let m = self.modulus;
         let mut matrix = vec![vec![0; self.dimension]; self.dimension];
@@ -249,7 +249,7 @@ impl Quotient {
                 m.add_multiple(column, m.integer(*c), x);
             }
         }
-        // Powers of it with what they are made of, until one depends on those before.
+        // Its powers with their combinations, until a power depends on the previous ones.
         let n = self.dimension;
         let mut rows: Vec<Option<Vec<u64>>> = vec![None; n];
         let mut vector = self.one.clone();
@@ -282,10 +282,10 @@ impl Quotient {
     }
 }
 
-/// More solutions than this are not looked for.
+/// Maximum number of solutions.
 const MOST: usize = 64;
 
-/// Takes a row into the pivots, if it is independent of them: where.
+/// Adds a row to the pivots if it is independent of them; returns its place.
 fn reduce(m: Modulus, pivots: &mut [Option<Vec<u64>>], mut row: Vec<u64>) -> Option<usize> {
     for place in 0..row.len() {
         if row[place] == 0 {

@@ -1,11 +1,10 @@
-//! A module's function as the text has it, run in double precision: its constants as read, its building blocks as compiled here, byte for byte the
-//! same.
+//! Runs a module's function in double precision: with the constants of its text, and with building blocks compiled here from the same bytes.
 
 use armgen_inverse_kinematics::f64 as block;
 
 use super::text::{self, Construction, Text};
 
-/// What is known of the solutions, as the module says it.
+/// The module's verdict about its solutions.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Verdict {
     Complete,
@@ -14,7 +13,7 @@ pub(super) enum Verdict {
     Continuum,
 }
 
-/// What the function returns: for each solution the joints' (cos q, sin q) or (q, 0).
+/// The result of the function: for each solution (cos q, sin q) or (q, 0) of the joints.
 #[derive(Clone, Debug)]
 pub(super) struct Outcome {
     pub(super) verdict: Verdict,
@@ -57,7 +56,7 @@ fn arrangement<const J: usize>(way: &text::Arrangement) -> Option<block::Arrange
     })
 }
 
-/// As the text `solutions` concludes, after virtual joints that have to come out 0, where there are any.
+/// The conclusion as in the text `solutions`, which first removes virtual joints, if any; they must come out 0.
 fn concluded<const J: usize, const N: usize>(text: &Text, t: &block::Frame, found: &block::Branches<J, N>) -> Option<Outcome> {
     let Some(own) = &text.own else { return Some(listed(text, found)) };
     let (arm, length) = (arrangement::<6>(own)?, text.length.parse().ok()?);
@@ -108,9 +107,9 @@ fn in_order<const J: usize, const N: usize>(
     concluded(text, t, &found)
 }
 
-/// What the function returns at a pose; `None` if its text cannot be run.
+/// The result of the function at a pose; `None` if its text cannot be run.
 ///
-/// - `redundancy`: the value of the joint that is given, where there is one.
+/// - `redundancy`: the value of the given joint, if any.
 pub(super) fn run(text: &Text, t: &block::Frame, redundancy: f64) -> Option<Outcome> {
     let Some(given) = &text.given else {
         return match text.construction {
@@ -128,7 +127,7 @@ pub(super) fn run(text: &Text, t: &block::Frame, redundancy: f64) -> Option<Outc
     let value = joint.value(redundancy);
     let link = joint.link(value);
     let mut outcome = match given.place {
-        // A position says nothing of the rotation in which what the last joint moves stands.
+        // A position does not determine the orientation of the last joint's motion.
         None if !text.rotation && given.joint > 0 => of_rest(text, t, None, block::column(&link, 3))?,
         None => of_rest(text, &joint.rest(value, t), None, [0.0; 3])?,
         Some(place) => of_rest(text, t, Some((place, link)), [0.0; 3])?,
@@ -139,7 +138,7 @@ pub(super) fn run(text: &Text, t: &block::Frame, redundancy: f64) -> Option<Outc
     Some(outcome)
 }
 
-/// The same of the joints that are not given. `tip`: the point that has the position, seen from behind them.
+/// The same for the joints that are not given. `tip`: the point at the position, relative to the frame after them.
 fn of_rest(text: &Text, t: &block::Frame, moved: Option<(usize, block::Frame)>, tip: block::Vector) -> Option<Outcome> {
     fn with_moved<const J: usize>(mut links: [block::Frame; J], moved: Option<(usize, block::Frame)>) -> [block::Frame; J] {
         if let Some((place, link)) = moved {

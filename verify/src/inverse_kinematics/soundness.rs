@@ -1,12 +1,12 @@
-//! Soundness of every branch: the building blocks themselves, as texts, run in prime fields.
+//! Soundness of every branch: the unmodified building blocks run in prime fields.
 //!
-//! The blocks of closed forms are arithmetic and square roots over a scalar, and comparisons with roundings. In a prime field nothing is
-//! rounded: tolerances are 0, what differs from 0 is positive, and a square root exists for half of all elements; what is computed from one
-//! that does not is no number. At random poses, which a posture reaches, whatever the construction returns for a branch has to close the
-//! loop exactly, with c² + s² = 1 in every joint; poses are drawn until each branch has done so. A branch that is wrong passes at a random
-//! pose with odds of about its degree over the prime: less than 1e-15.
+//! The blocks of closed forms consist of arithmetic, square roots, and comparisons with tolerances. In a prime field nothing is rounded:
+//! tolerances are 0, every nonzero element counts as positive, and half of all elements have a square root. Results from a missing square root
+//! are not numbers. At random reachable poses, every branch that the construction returns must close the loop exactly, with c² + s² = 1 in every
+//! joint. Poses are drawn until each branch has done so. A wrong branch passes at a random pose with odds of about its degree over the prime:
+//! less than 1e-15.
 //!
-//! Signs of square roots mean nothing in a field, so that this says nothing of which branch is called what.
+//! Signs of square roots have no meaning in a field, so this check does not verify the names of branches.
 
 use std::cell::Cell;
 
@@ -16,11 +16,11 @@ use super::text::{Construction, Text};
 
 thread_local! {
     static FIELD: Cell<Option<Field>> = const { Cell::new(None) };
-    /// Whether what is no number has been compared, so that some branches of a run may have gone anywhere.
+    /// Whether a missing value has been compared, so that some branches of a run may be arbitrary.
     static UNKNOWN: Cell<bool> = const { Cell::new(false) };
 }
 
-/// A prime field with what square roots in it need.
+/// A prime field with constants for square roots.
 #[derive(Clone, Copy, Debug)]
 struct Field {
     m: Modulus,
@@ -43,7 +43,7 @@ impl Field {
         Field { m, twos, odd, generator: m.power(m.integer(candidate), odd) }
     }
 
-    /// The square root of the smaller representative, if there is one (Tonelli and Shanks).
+    /// The square root with the smaller representative, if it exists (Tonelli and Shanks).
     fn sqrt(self, x: u64) -> Option<u64> {
         let m = self.m;
         if x == 0 {
@@ -75,10 +75,10 @@ impl Field {
     }
 }
 
-/// The blocks over a prime field. Their texts are those of `armgen-inverse-kinematics`; what they need of a scalar stands here.
+/// The blocks over a prime field: the texts of `armgen-inverse-kinematics`, and here the scalar operations that they need.
 #[allow(dead_code, unreachable_pub, missing_docs, clippy::all, clippy::pedantic)]
 mod blocks {
-    /// An element of the field, or none: what has been computed from a square root that does not exist, or from a division by 0.
+    /// An element of the field, or a missing value after a nonexistent square root or a division by 0.
     #[derive(Clone, Copy, Debug)]
     pub enum Real {
         /// A number of the text.
@@ -93,10 +93,10 @@ mod blocks {
     impl Real {
         pub const ZERO: Real = Real::Element(Some(0));
         pub const NAN: Real = Real::Element(None);
-        /// Misses are not looked at.
+        /// Misses are ignored.
         pub const INFINITY: Real = Real::ZERO;
 
-        /// A number of a text: a small multiple of 1/1024.
+        /// A number in a text: a small multiple of 1/1024.
         pub const fn of(x: f64) -> Real {
             Real::Number(x)
         }
@@ -203,7 +203,7 @@ mod blocks {
         }
     }
 
-    /// What differs is larger: so a difference from 0 is taken for one that is not rounding.
+    /// Distinct elements compare as larger, so a nonzero difference never counts as rounding error.
     impl PartialOrd for Real {
         fn partial_cmp(&self, other: &Real) -> Option<std::cmp::Ordering> {
             let values = self.value().zip(other.value());
@@ -219,7 +219,7 @@ mod blocks {
         Real::Element(x.value().and_then(|x| field().sqrt(x)))
     }
 
-    /// An angle is the tangent of its half.
+    /// The tangent of half the angle represents an angle.
     pub fn atan2(s: Real, c: Real) -> Real {
         s / (sqrt(c * c + s * s) + c)
     }
@@ -230,7 +230,7 @@ mod blocks {
         ((one - half * half) * over, (half + half) * over)
     }
 
-    /// Roots of an equation on the circle are no closed form: there are none here.
+    /// Roots of an equation on the circle have no closed form, so this list stays empty.
     pub struct CircleRoots<const N: usize> {
         pub count: usize,
         pub all: [CircleRoot; N],
@@ -270,14 +270,14 @@ fn frame(f: &Displacement) -> blocks::Frame {
     f.map(|row| row.map(real))
 }
 
-/// A pose at which a construction runs.
+/// A pose for running a construction.
 pub(super) struct At<'a> {
     pub(super) closed: &'a Loop,
     /// The pose that the joints of the loop have to reach.
     pub(super) pose: &'a Displacement,
-    /// Of a position: the point that reaches it, seen from behind these joints.
+    /// For a position: the point at the position, relative to the frame after these joints.
     pub(super) tip: [u64; 3],
-    /// The posture that reaches it, in the arm's order.
+    /// The posture that reaches the pose, in the arm's order.
     pub(super) posture: &'a [[u64; 2]],
 }
 
@@ -298,7 +298,7 @@ fn case(name: &str) -> Option<Case> {
     })
 }
 
-/// Whether the construction of a module is one of closed forms.
+/// Whether the construction of a module has a closed form.
 pub(super) fn is_closed(construction: &Construction) -> bool {
     match construction {
         Construction::SphericalTriple { polished, case: name, .. } => !polished && case(name).is_some(),
@@ -308,8 +308,8 @@ pub(super) fn is_closed(construction: &Construction) -> bool {
     }
 }
 
-/// Runs the construction of a module at a pose of a field. Notes the branches that close the loop; of these the number with all virtual joints at
-/// 0 is returned. The first that does not is the error, unless something that is no number was compared on the way.
+/// Runs the construction of a module at a pose of a field. Marks the branches that close the loop, and returns the number of those with all
+/// virtual joints at 0. The first branch that does not close the loop is the error, unless a missing value was compared.
 pub(super) fn run(module: &Text, at: &At<'_>, sound: &mut [bool]) -> Result<usize, u16> {
     let own = Cell::new(0);
     branches(module, at, sound, &own).map(|()| own.get())

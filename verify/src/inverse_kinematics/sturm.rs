@@ -1,4 +1,4 @@
-//! Polynomials over the fractions from their residues, and how many real roots they have: Sturm's theorem.
+//! Reconstructs rational polynomials from residues, and counts their real roots by Sturm's theorem.
 
 use dashu_base::{Gcd, Signed, SquareRoot, UnsignedAbs};
 use dashu_int::{IBig, UBig};
@@ -19,7 +19,7 @@ impl Residues {
         Residues { modulus: UBig::ONE, values: vec![UBig::ZERO; count] }
     }
 
-    /// Takes in the residues modulo another prime (Chinese remainders).
+    /// Adds the residues modulo another prime (Chinese remainder theorem).
     pub(super) fn add(&mut self, prime: u64, residues: &[u64]) {
         let field = super::modular::Modulus::new(prime);
         let over = field.inverse(field.of(remainder(&self.modulus, prime)));
@@ -30,12 +30,12 @@ impl Residues {
         self.modulus *= prime;
     }
 
-    /// The fractions with these residues, over their common denominator, which comes last; `None` if numerators or denominators are too large
-    /// for the primes so far.
+    /// The fractions with these residues, over their common denominator, which comes last; `None` if numerators or denominators are too large for
+    /// the primes so far.
     pub(super) fn fractions(&self) -> Option<Vec<IBig>> {
         let bound = (&self.modulus >> 1usize).sqrt();
         let mut common = UBig::ONE;
-        // By value: (numerator, the common denominator at that time).
+        // Per value: the numerator, and the common denominator at that time.
         let mut found: Vec<(IBig, UBig)> = Vec::new();
         for value in &self.values {
             // Euclid's algorithm: r = t x mod M with r and t both small.
@@ -61,7 +61,7 @@ impl Residues {
     }
 }
 
-/// The residues of integers over the last of them.
+/// The residues of integers divided by the last of them.
 pub(super) fn residues_of(coefficients: &[IBig], prime: u64) -> Vec<u64> {
     let field = super::modular::Modulus::new(prime);
     let of = |x: &IBig| {
@@ -77,14 +77,14 @@ pub(super) fn residues_of(coefficients: &[IBig], prime: u64) -> Vec<u64> {
     rest.iter().map(|x| field.value(field.times(of(x), over))).collect()
 }
 
-/// What Sturm's theorem says of a polynomial.
+/// Root counts from Sturm's theorem.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct Roots {
-    /// Distinct roots, complex ones too.
+    /// Number of distinct roots, including complex ones.
     pub(super) distinct: usize,
-    /// Distinct real roots.
+    /// Number of distinct real roots.
     pub(super) real: usize,
-    /// Those of them that are multiple.
+    /// Number of multiple roots among the real roots.
     pub(super) multiple: usize,
 }
 
@@ -110,7 +110,7 @@ fn derivative(p: &[IBig]) -> Vec<IBig> {
     p.iter().enumerate().skip(1).map(|(k, c)| c * IBig::from(k)).collect()
 }
 
-/// The polynomial, its derivative and remainders with the sign turned, each up to a positive factor; lowest coefficients first.
+/// The polynomial, its derivative and the negated remainders, each up to a positive factor; lowest coefficients first.
 fn sequence(p: &[IBig]) -> Vec<Vec<IBig>> {
     let mut all = vec![primitive(p.to_vec()), primitive(derivative(p))];
     while let [.., a, b] = all.as_slice() {
@@ -137,7 +137,7 @@ fn sequence(p: &[IBig]) -> Vec<Vec<IBig>> {
     all
 }
 
-/// Roots of a polynomial that is not 0, lowest coefficient first.
+/// The roots of a nonzero polynomial, lowest coefficient first.
 pub(super) fn roots(p: &[IBig]) -> Roots {
     let all = sequence(p);
     let changes = |at_minus: bool| {
@@ -179,7 +179,7 @@ mod tests {
         assert_eq!(of(&[&[1, 0, 1], &[1, 0, 1], &[4, 1]]), (3, 1, 0));
         assert_eq!(of(&[&[0, -5]]), (1, 1, 0));
         assert_eq!(of(&[&[7]]), (0, 0, 0));
-        // Wilkinson's polynomial with 14 roots, times one without.
+        // Wilkinson's polynomial with 14 roots, times a factor without real roots.
         let mut factors: Vec<Vec<i64>> = (1..15).map(|k| vec![-k, 1]).collect();
         factors.push(vec![1, 1, 1]);
         let factors: Vec<&[i64]> = factors.iter().map(Vec::as_slice).collect();

@@ -1,4 +1,4 @@
-//! Modules that are right, and modules that are not.
+//! Correct modules, and faulty modules.
 
 use armgen_codegen::schedule::{Options, Selection};
 
@@ -20,7 +20,7 @@ fn robot(name: &str) -> (Source, String) {
     module(&std::fs::read_to_string(path).expect("a robot of the project"))
 }
 
-/// What is wrong with a text in which something is replaced where it first stands.
+/// The fault of a text after a replacement at the first occurrence.
 fn fault_of(source: &Source, text: &str, [old, new]: [&str; 2]) -> String {
     assert!(text.contains(old), "{old}");
     verify(source, &text.replacen(old, new, 1), 0).faults.pop().unwrap_or_default()
@@ -40,7 +40,7 @@ fn robots_are_verified() {
     }
 }
 
-/// A description from rows (kind, a, alpha, d, theta).
+/// A description with rows (kind, a, alpha, d, theta).
 fn description(task: &str, rows: &[[&str; 5]]) -> String {
     let joint = |(i, [kind, a, alpha, d, theta]): (usize, &[&str; 5])| {
         format!(
@@ -56,7 +56,7 @@ fn description(task: &str, rows: &[[&str; 5]]) -> String {
 
 const POINTING: &str = "inverse_kinematics: {target: pointing}";
 
-/// One arm of each class, with constants that are fractions where they can be.
+/// An arm of each class, with rational constants where possible.
 fn made_up() -> Vec<(&'static str, usize, String)> {
     let (o, q, minus) = ("0", "pi/2", "-pi/2");
     let arm = |name, solutions, task: &str, rows: &[[&str; 5]]| (name, solutions, description(task, rows));
@@ -247,8 +247,8 @@ fn made_up() -> Vec<(&'static str, usize, String)> {
     ]
 }
 
-/// Seven joints with one that is given: between two others, in the loop read forwards and backwards, and the last one; shoulder and wrist
-/// with an offset at the elbow.
+/// Arms of seven joints with a given joint: between two others, in the loop read forwards and backwards; the last joint; and a shoulder and a
+/// wrist with an offset at the elbow.
 fn redundant() -> Vec<(&'static str, usize, String)> {
     let (o, q, minus) = ("0", "pi/2", "-pi/2");
     let rows = |offset, back| {
@@ -274,7 +274,7 @@ fn made_up_arm(name: &str) -> String {
     found.expect("an arm").2
 }
 
-/// What is certified at a swivel angle: the text, its numbers, the loop and the class.
+/// For a swivel angle the certificate covers the text, its numbers, the loop and the class.
 #[test]
 fn a_swivel_angle_is_verified_and_not_counted() {
     let (_, _, text) = redundant().remove(0);
@@ -294,7 +294,7 @@ fn a_swivel_angle_is_verified_and_not_counted() {
     }
 }
 
-/// An axis twice stands in for a joint that the others make superfluous.
+/// A duplicate axis represents a joint that the others make redundant.
 #[test]
 fn axes_that_are_dependent_are_seen() {
     let m = modular::Modulus::new((1 << 61) - 1);
@@ -321,7 +321,7 @@ fn arms_of_each_class_are_verified() {
         if let Some((found, _)) = &report.generic {
             assert_eq!(*found, solutions, "{name}: {report}");
         }
-        // Every branch, where the construction is of closed forms: nothing is left to Newton's method, and no determinant or polynomial is solved.
+        // Every branch of a closed-form construction: no Newton's method, no determinants, no polynomials.
         let packed: String = text.split_whitespace().collect();
         let others = ["polish(&mutfound,", "pubfngeneral_arm(", "pubfntwo_slides("];
         let closed = !others.iter().any(|other| packed.contains(other));
@@ -329,7 +329,7 @@ fn arms_of_each_class_are_verified() {
     }
 }
 
-/// Constants with roots and angles: the number of solutions at random poses is known all the same.
+/// Constants with roots and angles: the number of solutions at random poses is still known.
 #[test]
 fn arms_with_any_angles_are_verified() {
     let rows = [
@@ -346,12 +346,12 @@ fn arms_with_any_angles_are_verified() {
     assert_eq!(report.generic.as_ref().map(|generic| generic.0), Some(8), "{report}");
 }
 
-/// Texts that cannot be read: blocks that are not the tested ones, and what stands beside them.
+/// Unreadable texts: blocks that differ from the tested ones, and additional text.
 #[test]
 fn other_texts_are_refused() {
     let (source, text) = robot("puma560");
     let fault = |old: &str, new: &str| fault_of(&source, &text, [old, new]);
-    // A sign, a lost branch, a degenerate case that is dropped.
+    // A changed sign, a lost branch, a dropped degenerate case.
     let why = "is not the tested one";
     assert!(fault("x * along - y * w, y * along + x * w", "x * along + y * w, y * along + x * w").contains(why));
     assert!(fault("found.count = 2;", "found.count = 1;").contains(why));
@@ -365,7 +365,7 @@ fn other_texts_are_refused() {
     assert!(fault(names, &(names.to_owned() + &"[".repeat(1 << 20))).contains("nested more than"));
 }
 
-/// The same of slides: a lost branch, a sign, a degenerate case, a wrong class.
+/// The same for prismatic joints: a lost branch, a sign, a degenerate case, a wrong class.
 #[test]
 fn other_texts_of_slides_are_refused() {
     let why = "is not the tested one";
@@ -387,7 +387,7 @@ fn other_texts_of_slides_are_refused() {
     }
 }
 
-/// The same of positions that are polished: a lost branch, a sign, the point, no polish, a wrong class.
+/// The same for positions with Newton's method: a lost branch, a sign, the point, a missing Newton step, a wrong class.
 #[test]
 fn other_texts_of_positions_are_refused() {
     let why = "is not the tested one";
@@ -401,7 +401,7 @@ fn other_texts_of_positions_are_refused() {
         ("position, slide first", "regional_slide(&a", "regional_general(&a", "`regional_general` does not hold"),
         ("position, slide between", "regional_mid_slide(&a", "regional_mid_slide_across(&a", "the class is wrong"),
         ("position, slide last", "backward: true", "backward: false", "should stand where"),
-        // A joint that is given: the point that it moves, the link, the joint, the room for solutions, the class.
+        // A given joint: the point it moves, the link, the joint, the capacity for solutions, the class.
         ("position and q4", "transform(&LOOP.before, tip)", "transform(&LOOP.before, position)", "should stand where"),
         ("position and q4", "column(&GIVEN.link(value), 3)", "column(&GIVEN.link(value), 2)", "should stand where"),
         ("position and q4", "q[3]", "q[2]", "should stand where"),
@@ -418,7 +418,7 @@ fn other_texts_of_positions_are_refused() {
     }
 }
 
-/// Code in a text of several lines, in documentation that is run, and what a module says of itself.
+/// Code within a text of several lines, in documentation that is run, and in the module's description of itself.
 #[test]
 fn what_is_not_armgens_is_refused() {
     let (source, text) = robot("scara4");
@@ -433,7 +433,7 @@ fn what_is_not_armgens_is_refused() {
     assert!(fault("at most 2 solutions", "at most 4 solutions").contains(writes));
     assert!(fault("(input ", "(input 0").contains("line 1: "));
     assert!(fault("elbow up", "elbow\u{1b}[2Kup").contains("the character U+001B, which cannot be seen"));
-    // The file may have been called otherwise, and other poses are not to be had by that.
+    // The file name may differ, but must not change the poses.
     let renamed = text.replacen(" from robot.yaml", " from arm.yaml", 1);
     let [one, other] = [&text, &renamed].map(|text| verify(&source, text, 8));
     assert!(one.passed() && other.passed() && one.to_string() == other.to_string(), "{one}\n{other}");
@@ -444,7 +444,7 @@ fn what_is_not_armgens_is_refused() {
     assert!(!verify(&source, &(text + "pub static X: u8 = 0;\n"), 0).passed());
 }
 
-/// In C: judged by the module in Rust, and refused wherever it is not its translation.
+/// C modules: checked through the Rust module, and refused wherever they are not its translation.
 #[test]
 fn modules_in_c_are_verified() {
     let shoulder = made_up_arm("offset shoulder");
@@ -487,7 +487,7 @@ fn changes_of_modules_in_c_are_refused() {
         let lines: Vec<&str> = text.lines().collect();
         let before = changed;
         while changed < before + 100 {
-            // Of the first line the file's name can be another.
+            // The file name in the first line may differ.
             let at = 1 + stream.below(lines.len() as u64 - 1) as usize;
             let places: Vec<usize> = lines[at].char_indices().filter(|(_, c)| c.is_ascii_graphic()).map(|(at, _)| at).collect();
             let Some(&place) = places.get(stream.below(places.len().max(1) as u64) as usize) else { continue };
@@ -510,7 +510,7 @@ fn changes_of_modules_in_c_are_refused() {
             }
             let spoilt = spoilt.join("\n") + "\n";
             assert!(difference(&proposal, &source, &spoilt).is_some(), "{name}: `{}` for `{}`", line.trim(), lines[at].trim());
-            // What is refused alone is refused with all the rest.
+            // A change that is refused alone is also refused in the complete verification.
             assert!(changed % 50 != 0 || !verify(&source, &spoilt, 0).passed(), "{name}: {line}");
             changed += 1;
         }
@@ -520,7 +520,7 @@ fn changes_of_modules_in_c_are_refused() {
 
 type Fault<'a> = &'a dyn Fn() -> Option<String>;
 
-/// What each check is for; `peel` leaves the checks out that refuse a trick, one after the other.
+/// The purpose of each check; `peel` omits the checks that refuse a trick, in turn.
 pub(crate) fn tricks(peel: &mut dyn FnMut(&str, &[(Check, &'static str)], Fault<'_>)) {
     use Check::{Branches, Class, Counts, Limits, Loop, LoopNumbers, Meeting, MostSolutions, Reached, Sound, WholeText};
     let shoulder = made_up_arm("offset shoulder");
@@ -528,7 +528,7 @@ pub(crate) fn tricks(peel: &mut dyn FnMut(&str, &[(Check, &'static str)], Fault<
     let mut edited = |old: &str, new: &str, layers: &[(Check, &'static str)]| {
         assert!(text.contains(old), "{old}");
         let trick = text.replacen(old, new, 1);
-        // All that is written otherwise than armgen does is refused at last.
+        // The comparison with armgen's text finally refuses any other text.
         let layers = [layers, &[(WholeText, "where armgen writes")]].concat();
         peel(new, &layers, &|| verify(&source, &trick, 0).faults.pop());
     };
@@ -548,7 +548,7 @@ pub(crate) fn tricks(peel: &mut dyn FnMut(&str, &[(Check, &'static str)], Fault<
     let labels = &text[text.find("pub const BRANCHES").expect("branches")..];
     let label = format!("\"{}\"", labels.split('"').nth(1).expect("a label"));
     edited(&label, "\"\"", &[(Branches, "BRANCHES: 7 of them, and there are 8")]);
-    // Solutions beside the pose; a count off by one; a double solution that is passed over.
+    // Solutions off the pose; a count off by one; an ignored double solution.
     let roots = |real, multiple| Count::Finite(super::sturm::Roots { distinct: 8, real, multiple });
     let eight = run::Outcome { verdict: Verdict::Complete, solutions: vec![vec![]; 8] };
     let missed = |count, miss| judge(&mut Report::default(), count, &eight, &[miss; 8]).err();

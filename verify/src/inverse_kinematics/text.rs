@@ -1,47 +1,47 @@
-//! The text of a module of inverse kinematics, read: its constants, its construction, and whether the rest is what it has to be.
+//! Reads the text of a module of inverse kinematics: its constants and its construction; checks the rest against the required text.
 //!
-//! Comments and blanks say nothing. What is left must be the head that exports, constants, one function whose body is that of a
-//! construction, and building blocks, each byte for byte the one that this program has, compiles and tests.
+//! Comments and blanks have no meaning. The rest must consist of the exporting head, constants, one function whose body is that of a
+//! construction, and building blocks. Each block must equal, byte for byte, the one that this program contains, compiles and tests.
 
 use armgen_inverse_kinematics::texts::TEXTS;
 
-/// A constant's value.
+/// The value of a constant.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) enum Value {
-    /// A number as it stands there, with its sign.
+    /// A number with its sign, as in the text.
     Number(String),
     Bool(bool),
-    /// Anything else that is one word or text.
+    /// Any other single word or text.
     Word(String),
     List(Vec<Value>),
     Fields(Vec<(String, Value)>),
 }
 
-/// A loop as the text has it.
+/// A loop of the text.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Arrangement {
     pub(super) order: Vec<usize>,
     pub(super) prismatic: Vec<bool>,
     pub(super) open: usize,
     pub(super) backward: bool,
-    /// The place of the link that the given joint moves, where that stands between two others.
+    /// The place of the link that the given joint moves, if it lies between two other joints.
     pub(super) moved: Option<usize>,
-    /// All its numbers as they stand in the text: links, before, after, offsets.
+    /// All its numbers as in the text: links, before, after, offsets.
     pub(super) numbers: Vec<String>,
 }
 
-/// A joint whose value is given.
+/// A joint with a given value.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Given {
     pub(super) joint: usize,
-    /// The place in the loop of the link that it moves, where it stands between two others.
+    /// The place in the loop of the link that it moves, if it lies between two other joints.
     pub(super) place: Option<usize>,
     pub(super) prismatic: bool,
-    /// Its numbers as they stand in the text: before, after.
+    /// Its numbers as in the text: before, after.
     pub(super) numbers: Vec<String>,
 }
 
-/// What the function calls.
+/// The construction that the function calls.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(super) enum Construction {
     SphericalTriple { kinds: Vec<bool>, case: String, polished: bool },
@@ -54,7 +54,7 @@ pub(super) enum Construction {
     General,
 }
 
-/// A module's text.
+/// The text of a module.
 #[derive(Clone, Debug)]
 pub(super) struct Text {
     pub(super) real: crate::enclosure::Float,
@@ -67,13 +67,13 @@ pub(super) struct Text {
     pub(super) loops: Vec<Arrangement>,
     pub(super) construction: Construction,
     pub(super) given: Option<Given>,
-    /// The loop of the arm's own joints, where there are virtual ones that have to come out 0.
+    /// The loop of the arm's own joints, if there are virtual joints, which must come out 0.
     pub(super) own: Option<Arrangement>,
-    /// Whether the function asks for a rotation, not for a position alone.
+    /// Whether the function uses the orientation, not only the position.
     pub(super) rotation: bool,
 }
 
-/// Code without comments and blanks, texts as they are, and without commas before brackets that close.
+/// Code without comments, blanks, and commas before closing brackets; string literals stay unchanged.
 fn squeezed(text: &str) -> String {
     let mut all = String::new();
     for line in text.lines() {
@@ -94,7 +94,7 @@ fn squeezed(text: &str) -> String {
     all
 }
 
-/// Lists and structs of a constant may nest so deep: two loops of links of rows of entries take six levels.
+/// Maximum nesting depth of a constant: two loops of links of rows of entries take six levels.
 const DEEPEST: usize = 8;
 
 struct Reader<'a> {
@@ -169,7 +169,7 @@ impl<'a> Reader<'a> {
 }
 
 impl Arrangement {
-    /// Whether the link at a place is a constant: it depends neither on the pose nor on the joint that is given.
+    /// Whether the link at a place is constant: it depends neither on the pose nor on the given joint.
     pub(super) fn is_constant(&self, place: usize) -> bool {
         self.open != place && self.moved != Some(place)
     }
@@ -279,16 +279,16 @@ const ROTATION: &str = "if!is_pose(t){returnSolutions::none(Verdict::Invalid);}l
 const POSITION: &str =
     "letposition=[x[3],y[3],z[3]];if!position.iter().all(|p|p.is_finite()){returnSolutions::none(Verdict::Invalid);}";
 const POLISH: &str = "polish(&mutfound,&Loop{links:&links,prismatic:LOOP.prismatic,target:[0.0;3],length:LENGTH});";
-/// Of closed forms.
+/// The conclusion of closed forms.
 const CLOSE: &str =
     "close_where_solutions_meet(&mutfound,&Loop{links:&links,prismatic:LOOP.prismatic,target:[0.0;3],length:LENGTH});";
 const POLISH_POSITION: &str =
     "letlinks=[a,b,displaced(from)];polish(&mutfound,&Loop{links:&links,prismatic:LOOP.prismatic,target:to,length:LENGTH});";
 const IN_ORDER: &str = "letcount=found.count;forbranchinfound.all.iter_mut().take(count){*branch=LOOP.of_arm(branch);}";
 
-/// The function from behind its check of the arguments, and the place of the link that a given joint moves.
+/// The function after its check of the arguments; also returns the place of the link that a given joint moves.
 ///
-/// - `tip`: the point of a position stands behind a last joint, which is given.
+/// - `tip`: the point of a position lies after a given last joint.
 fn body(
     reader: &mut Reader<'_>,
     loops: &[Arrangement],
@@ -353,7 +353,7 @@ fn body(
     conclusion(reader, loops, (dof, given, own), construction).map(|construction| (construction, moved))
 }
 
-/// Whether Newton's method is called for all solutions. Else it is for those that meet, but for an arm's `own` joints, which are refined later.
+/// Whether Newton's method is called for all solutions. Otherwise it handles coincident solutions only, or an arm's `own` joints, refined later.
 fn polished(reader: &mut Reader<'_>, own: bool) -> Result<bool, String> {
     let polished = reader.take(POLISH);
     if !polished && !own {
@@ -362,7 +362,7 @@ fn polished(reader: &mut Reader<'_>, own: bool) -> Result<bool, String> {
     Ok(polished)
 }
 
-/// A position, from where its links are known, or already `moved` by a joint that is given.
+/// A position, from known links or links `moved` by a given joint.
 fn position(reader: &mut Reader<'_>, loops: &[Arrangement], (tip, moved): (bool, bool)) -> Result<Construction, String> {
     let end = |frame: &str| if tip { format!("transform(&{frame},tip)") } else { format!("column(&{frame},3)") };
     let points = if loops.first().is_some_and(|way| way.backward) {
@@ -385,7 +385,7 @@ fn position(reader: &mut Reader<'_>, loops: &[Arrangement], (tip, moved): (bool,
     Ok(Construction::Position { case, polished })
 }
 
-/// How many joints there are with that which is given: with a virtual one more than the arm has.
+/// The number of joints including the given joint; a virtual joint makes it one more than the arm has.
 fn joints_with_given(loops: &[Arrangement], dof: usize) -> String {
     match loops.first().map_or(0, |way| way.order.len()) + 1 {
         all if all == dof => "DOF".to_owned(),
@@ -401,7 +401,7 @@ fn conclusion(
     construction: Construction,
 ) -> Result<Construction, String> {
     reader.expect(IN_ORDER)?;
-    // Without branches by the joint variables.
+    // Without branches, the conclusion uses the joint variables.
     let by_angle = matches!(construction, Construction::TwoSlides { .. });
     if given {
         let others = loops.first().map_or(0, |way| way.order.len());
@@ -419,7 +419,7 @@ fn conclusion(
 }
 
 impl Text {
-    /// Reads a module; `None`: it says that the arm has no construction. What stands there and has to be something else is said.
+    /// Reads a module; `None` if it states that the arm has no construction. An error describes a place with unexpected text.
     pub(super) fn read(text: &str) -> Result<Option<Text>, String> {
         if text.lines().all(|line| line.is_empty() || line.starts_with("//")) {
             return Ok(None);
@@ -435,7 +435,7 @@ impl Text {
             (false, true) => crate::enclosure::Float::F32,
             _ => return Err("there is not one block of the scalar".into()),
         };
-        // The bracket that ends the function.
+        // The closing bracket of the function.
         let code = squeezed(code) + "}";
         let mut reader = Reader { rest: &code };
         reader.expect(EXPORT)?;
@@ -509,7 +509,7 @@ impl Text {
         first.moved = moved;
         if let Some(joint) = &mut joint {
             joint.place = moved;
-            // Of a direction the virtual turn is behind a last joint.
+            // For a direction, the virtual rotation follows a last joint.
             let last = joint.joint + 1 == dof;
             let end = joint.joint == 0 || last && (at_end || dof != 6 || first.order.len() != 6);
             if joint.joint >= dof || end != at_end || end == moved.is_some() {
@@ -526,7 +526,7 @@ impl Text {
         if (construction == Construction::ShoulderElbowWrist) != (redundant && joint.is_none()) {
             return Err("what is given is not what the construction asks for".into());
         }
-        // Its six places are those of the arm's joints and what stays at 0 behind them.
+        // Its six places are the arm's joints, followed by virtual joints that stay at 0.
         if own
             .as_ref()
             .is_some_and(|way| way.order != [0, 1, 2, 3, 4, 5] || way.backward || way.open != 5 || dof >= 6 || !rotation)
@@ -561,7 +561,7 @@ impl Text {
     }
 }
 
-/// The names of the blocks that stand in a text, each as it is here, and nothing else.
+/// The names of the blocks in a text; each must equal the block here, and nothing else may occur.
 fn taken(text: &str) -> Result<Vec<&'static str>, String> {
     let mut rest = text;
     let mut names = Vec::new();

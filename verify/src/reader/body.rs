@@ -1,4 +1,4 @@
-//! From the body of a function to its steps.
+//! Reads the body of a function as steps.
 //!
 //! ```text
 //! body   = { { line } result } | { let mut result = zeros; NAME_into(arguments, &mut result); result }
@@ -15,8 +15,8 @@
 //! angle  = entry { (+ | -) entry } [ (+ | -) number ]               added joints first, each kind in their order, each joint once
 //! ```
 //!
-//! A name is a letter s, c or t, a digit, and digits, small letters and `_`: no keyword, no item, no prelude has such a name, and none is given
-//! twice in a function. In place of a name that is not used `_` may stand.
+//! A name is a letter s, c or t, a digit, then digits, small letters and `_`. No keyword, item or prelude has such a name, and no name occurs
+//! twice in a function. An unused name may be `_`.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::sync::atomic::{AtomicUsize, Ordering::Relaxed};
@@ -30,45 +30,45 @@ use crate::contract::{Promise, Returned};
 use crate::enclosure::Float;
 use crate::program::{Angle, Argument, Output, Program, Step};
 
-/// Steps and entries of results in a module; that of 32 joints takes a third of it.
+/// Maximum number of steps and result entries in a module; a module of 32 joints has a third of it.
 const MOST_STEPS: usize = 4_000_000;
-/// Indices of an entry of a result: a list of matrices has three.
+/// Maximum number of indices of a result entry; a list of matrices has three.
 const MOST_INDICES: usize = 3;
-/// Brackets in brackets, in a sum and in a result.
+/// Maximum depth of brackets, in a sum and in a result.
 const MOST_BRACKETS: usize = 16;
 
-/// What all functions of a module share.
+/// Data shared by all functions of a module.
 #[derive(Debug)]
 pub(super) struct Shared<'a, 'm> {
     pub(super) real: Float,
     pub(super) parts: &'m BTreeMap<&'a str, Part<'a>>,
-    /// The bodies of functions that write their result where the caller says.
+    /// The bodies of functions that write their result into memory of the caller.
     pub(super) written: &'m BTreeMap<&'a str, Parser<'a>>,
     /// Whether the module has the fast sines.
     pub(super) fast: bool,
-    /// Steps and entries of all functions so far, whichever thread reads them.
+    /// Total number of steps and entries of all functions so far, across threads.
     pub(super) steps: AtomicUsize,
 }
 
 impl Shared<'_, '_> {
-    /// The functions are longer than any robot's, all together.
+    /// Whether the functions together are longer than those of any robot.
     pub(super) fn is_too_long(&self) -> bool {
         self.steps.load(Relaxed) > MOST_STEPS
     }
 
-    /// What is said of that.
+    /// The message about that.
     pub(super) fn too_long() -> String {
         format!("functions of more than {MOST_STEPS} steps and entries in all")
     }
 }
 
-/// A function as it was read.
+/// A function after reading.
 #[derive(Debug)]
 pub(super) struct Compiled<'a> {
     pub(super) program: Program,
-    /// Private items that it calls.
+    /// Private items it calls.
     pub(super) calls: BTreeSet<&'static str>,
-    /// Parts that it calls.
+    /// Parts it calls.
     pub(super) parts_called: BTreeSet<&'a str>,
 }
 
@@ -77,15 +77,15 @@ type Scope<'a> = BTreeMap<&'a str, usize>;
 struct Compiler<'a, 'm, 's> {
     shared: &'s Shared<'a, 'm>,
     parser: Parser<'a>,
-    /// Those of the function or the part that is read.
+    /// The arguments of the current function or part.
     arguments: Vec<Argument>,
     scope: Scope<'a>,
     program: Program,
     calls: BTreeSet<&'static str>,
     parts_called: BTreeSet<&'a str>,
-    /// Parts called so far.
+    /// Number of parts called so far.
     parts: usize,
-    /// How many values are given before what is read; all where that is read in its order.
+    /// Number of values defined before the current place; all if the text is read in order.
     given: usize,
 }
 
@@ -139,7 +139,7 @@ pub(super) fn compile<'a>(function: &Public<'a>, shared: &Shared<'a, '_>) -> Res
     Ok(Compiled { program, calls, parts_called })
 }
 
-/// The functions that give a sine or a cosine alone.
+/// The functions for a single sine or cosine.
 const ALONE: [&str; 2] = ["sin_one", "cos_one"];
 
 /// The name of a value.
@@ -168,7 +168,7 @@ impl<'a> Compiler<'a, '_, '_> {
         }
     }
 
-    /// Gives a value a name, or none for `_`.
+    /// Assigns a name to a value; `_` assigns no name.
     fn bind(&mut self, name: &Token<'a>, value: usize) -> Result<(), Fault> {
         if name.is("_") {
             return Ok(());
@@ -199,7 +199,7 @@ impl<'a> Compiler<'a, '_, '_> {
         }
     }
 
-    /// An argument of the function that is read.
+    /// An argument of the current function.
     fn argument(&mut self) -> Result<Argument, Fault> {
         let token = self.parser.take()?;
         let argument = Argument::named(token.text).filter(|argument| self.arguments.contains(argument));
@@ -216,7 +216,7 @@ impl<'a> Compiler<'a, '_, '_> {
         self.parser.expect(";")
     }
 
-    /// Names or `_` up to a bracket, behind the opening one.
+    /// Names or `_` up to the closing bracket, after the opening one.
     fn names(&mut self, close: &str) -> Result<Vec<Token<'a>>, Fault> {
         let mut names = Vec::new();
         self.list(close, |own| {
@@ -230,7 +230,7 @@ impl<'a> Compiler<'a, '_, '_> {
         Ok(names)
     }
 
-    /// A sine or a cosine alone.
+    /// A single sine or cosine.
     fn one_of_a_pair(&mut self, which: usize) -> Result<usize, Fault> {
         let function = self.parser.take()?;
         if !self.shared.fast {
@@ -244,12 +244,12 @@ impl<'a> Compiler<'a, '_, '_> {
         Ok(self.pair(angle)?[which])
     }
 
-    /// Sine and cosine of an angle, which are counted as a pair, whether both are used or not.
+    /// Sine and cosine of an angle; they count as a pair even if only one is used.
     fn pair(&mut self, angle: Angle) -> Result<[usize; 2], Fault> {
         Ok([self.push(Step::Sine(angle.clone()))?, self.push(Step::Cosine(angle))?])
     }
 
-    /// Behind `let`: the sines and cosines of one angle, or of several.
+    /// After `let`: the sines and cosines of one angle, or of several.
     fn waves(&mut self) -> Result<(), Fault> {
         self.parser.expect("(")?;
         let several = self.parser.is("[");
@@ -300,7 +300,7 @@ impl<'a> Compiler<'a, '_, '_> {
         }
         self.parser.expect(";")?;
         for (lane, angle) in angles.into_iter().enumerate() {
-            // A processor without vectors leaves the other lanes out, so that nothing may use them.
+            // A processor without vectors omits the other lanes, so nothing may use them.
             if lane >= count {
                 if let Some(name) =
                     [&sines[lane], &cosines[lane]].into_iter().find(|name| !name.is("_") && Check::Lanes.is_made())
@@ -316,7 +316,7 @@ impl<'a> Compiler<'a, '_, '_> {
         Ok(())
     }
 
-    /// `q[1] + q[2] - q[3] + 0.5`: a sum of joint variables and a constant. Its steps are steps of the function.
+    /// `q[1] + q[2] - q[3] + 0.5`: a sum of joint variables and a constant. Its steps belong to the function.
     fn angle(&mut self) -> Result<Angle, Fault> {
         let mut angle = Angle::default();
         let mut sum = None;
@@ -335,7 +335,7 @@ impl<'a> Compiler<'a, '_, '_> {
             } else {
                 let (argument, joint, step) = self.entry()?;
                 let factor = if minus { -1 } else { 1 };
-                // As rounding depends on the order, it is the same everywhere: added ones first.
+                // Rounding depends on the order, so the order is fixed: added joints first.
                 let follows = angle.terms.last().is_none_or(|&(last, before)| (-before, last) < (-factor, joint));
                 let new = angle.terms.iter().all(|(other, _)| *other != joint);
                 if argument != Argument::Q || !(follows && new || !Check::Angles.is_made()) {
@@ -350,7 +350,7 @@ impl<'a> Compiler<'a, '_, '_> {
                 Some(before) => self.push(Step::Add(before, term))?,
             });
             if angle.turn.is_some() || !(self.parser.is("+") || self.parser.is("-")) {
-                // As everywhere: joints by number.
+                // Programs store joints by number.
                 angle.terms.sort_unstable();
                 return Ok(angle);
             }
@@ -398,7 +398,7 @@ impl<'a> Compiler<'a, '_, '_> {
         }
     }
 
-    /// What stands here opens a bracket in so many others.
+    /// Checks that a bracket may open inside this number of others.
     fn not_too_deep(&self, brackets: usize) -> Result<(), Fault> {
         match brackets == MOST_BRACKETS && Check::Brackets.is_made() {
             true => Err(self.parser.peek().fault(format!("brackets in more than {MOST_BRACKETS} others"))),
@@ -406,7 +406,7 @@ impl<'a> Compiler<'a, '_, '_> {
         }
     }
 
-    /// `Real::mul_add(a, b, c)`: a product that is not rounded, and its sum with a third.
+    /// `Real::mul_add(a, b, c)`: an unrounded product, and its sum with a third operand.
     fn fused(&mut self, brackets: usize) -> Result<usize, Fault> {
         let place = self.parser.peek();
         self.not_too_deep(brackets)?;
@@ -480,7 +480,7 @@ impl<'a> Compiler<'a, '_, '_> {
         value.ok_or_else(|| name.fault(format!("{} is not a value that is given before", name.shown())))
     }
 
-    /// Behind `let`: `[t1, t2] = gravity_part_1(q, [c1, t3]);`, taken in as if its lines stood here.
+    /// After `let`: `[t1, t2] = gravity_part_1(q, [c1, t3]);`. The lines of the part are read as if they were here.
     fn call_of_part(&mut self) -> Result<(), Fault> {
         self.parser.expect("[")?;
         let given = self.names("]")?;
@@ -537,7 +537,7 @@ impl<'a> Compiler<'a, '_, '_> {
         given.iter().zip(values).try_for_each(|(name, value)| self.bind(name, value))
     }
 
-    /// Values by their names, up to a bracket, behind the opening one.
+    /// Values by name up to the closing bracket, after the opening one.
     fn values(&mut self, close: &str) -> Result<Vec<usize>, Fault> {
         let mut values = Vec::new();
         self.list(close, |own| {
@@ -548,11 +548,11 @@ impl<'a> Compiler<'a, '_, '_> {
         Ok(values)
     }
 
-    /// Lines, entries of the result and barriers up to the end: `by_q[0][1] = t1;`. Entries are read behind all lines, in their order, as those of a
-    /// result that is returned: wherever an entry is written, its steps and literals have the same places in the program.
+    /// Lines, result entries and barriers up to the end: `by_q[0][1] = t1;`. Entries are read after all lines, in the order of a returned result. So
+    /// the steps and literals of an entry have the same numbers in the program wherever the entry is written.
     fn written(&mut self, returned: Returned) -> Result<(), Fault> {
         let (named, accesses) = (returned.named(), returned.accesses());
-        // Where each begins, and how many values are given before.
+        // The place of each entry, and the number of values defined before it.
         let mut entries: BTreeMap<(usize, [usize; MOST_INDICES]), (Parser<'a>, usize)> = BTreeMap::new();
         while !self.parser.is("}") {
             if self.parser.is("let") {
@@ -597,7 +597,7 @@ impl<'a> Compiler<'a, '_, '_> {
         Ok(())
     }
 
-    /// What is returned, or a row of it.
+    /// A returned result, or a row of it.
     fn result(&mut self, place: String, brackets: usize) -> Result<(), Fault> {
         if brackets == MOST_BRACKETS {
             return Err(self.parser.peek().fault(format!("brackets in more than {MOST_BRACKETS} others")));

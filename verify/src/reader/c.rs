@@ -1,4 +1,4 @@
-//! Reads a module in C: the header that holds the functions.
+//! Reads a C module: the header with the functions.
 //!
 //! ```text
 //! header   = guard [ fused ] [ library ] prologue constants [ sines ] [ sign ] [ stribeck ] { { part } function } epilogue
@@ -32,18 +32,18 @@ const STD: &str = include_str!("c/std.h");
 const FAST_F64: &str = include_str!("c/fast_f64.h");
 const FAST_F32: &str = include_str!("c/fast_f32.h");
 
-/// The sines of the C library; of angles beyond the range of the module's own ones, where it has some.
+/// The sines of the C library; they also serve angles beyond the range of the module's own sines.
 const LIBRARY: &str = "#include <math.h>\n#define ROBOT_SIN(x) sin(x)\n#define ROBOT_COS(x) cos(x)\n";
 const NONE: &str = "#ifdef ROBOT_NO_MATH_H\n#define ROBOT_SIN(x) (((x) - (x)) / ((x) - (x)))\n\
     #define ROBOT_COS(x) (((x) - (x)) / ((x) - (x)))\n#else\n";
 
-/// What names and macros begin with, without the underscore.
+/// The prefixes of names and macros, without the underscore.
 struct Robot {
     name: String,
     upper: String,
 }
 
-/// The robot's name with the letters spelled out that C does not have in names.
+/// The robot's name, with letters outside C identifiers spelled out.
 fn spelled(name: &str) -> String {
     name.chars()
         .map(|c| if c.is_ascii_alphanumeric() || c == '_' { c.to_string() } else { format!("u{:04x}", c as u32) })
@@ -54,14 +54,14 @@ fn turned(name: &str) -> String {
     name.chars().map(|c| if c.is_ascii_lowercase() { c.to_ascii_uppercase() } else { c.to_ascii_lowercase() }).collect()
 }
 
-/// A text that stands in the name of a robot called `robot`, for one of another name.
+/// A text for the robot `robot`, renamed to another robot.
 pub(crate) fn in_the_name_of(name: &str, text: &str) -> String {
     let name = spelled(name);
     Robot { upper: turned(&name), name }.own(text)
 }
 
 impl Robot {
-    /// The texts of all modules in the name of this one.
+    /// A common text of all modules, renamed to this robot.
     fn own(&self, text: &str) -> String {
         let macros = format!("{}_", self.upper);
         let pieces: Vec<String> = text.split("robot_").map(|piece| piece.replace("ROBOT_", &macros)).collect();
@@ -79,7 +79,7 @@ impl Robot {
     }
 }
 
-/// A part of a long function: what it takes and gives, and where its lines begin.
+/// A part of a long function: its arguments and values, and the place of its lines.
 struct Part<'a> {
     arguments: Vec<&'a str>,
     taken: usize,
@@ -88,7 +88,7 @@ struct Part<'a> {
     used: bool,
 }
 
-/// The lines of a comment as those of other languages: without the signs in front.
+/// The lines of a comment in the form of other languages, without leading signs.
 fn comment(lines: &[&str]) -> Vec<String> {
     let last = lines.iter().rposition(|line| !line.trim().is_empty()).map_or(0, |last| last + 1);
     lines[..last].iter().map(|line| line.strip_prefix(" *").unwrap_or(line).to_string()).collect()
@@ -181,7 +181,7 @@ fn constants(
     let form =
         Constants { real, suffix, quotes: '"', list: |_, _| ["{", ", ", "}", "{}"], truth: ["0", "1"], infinity: "INFINITY" };
     let mut constants = BTreeMap::new();
-    // In their order; what follows the others is of arms that have it.
+    // In this order; those after the common ones exist only for arms that need them.
     for name in ["NAME", "JOINT_IS_REVOLUTE", "", "DOF", "PARAMETERS", "TASK_ROWS", "TASK", "JOINT_NAMES"]
         .into_iter()
         .chain(["POSITION_LIMITS", "VELOCITY_LIMITS", "EFFORT_LIMITS", "PARAMETER_NAMES", "NOMINAL_PARAMETERS"])
@@ -201,7 +201,7 @@ fn constants(
             _ => false,
         };
         if left_out {
-            // An array of length 0 is none in C.
+            // C has no arrays of length 0.
             if !name.starts_with("BASE") && !name.starts_with("NOMINAL_BASE") {
                 constants.insert(name.into(), Constant::Array(Vec::new()));
             }
@@ -296,7 +296,7 @@ impl<'a> Functions<'a> for Reader<'a, '_> {
                 let (part, indices) = promise.returned.part_of(&place);
                 let line = lines.number();
                 let value = lines.between(&format!("    {part}{indices} = "), ";")?;
-                // A caller may hand over one array as argument and as result.
+                // A caller may pass the same array as argument and as result.
                 let written = (!body.program.outputs.is_empty()).then_some(body.program.steps.len());
                 body.output(place, value, line)?;
                 let reads = |step: &Step| matches!(step, Step::Input(..) | Step::Sign(_));
@@ -342,7 +342,7 @@ impl<'a> Reader<'a, '_> {
         Ok(())
     }
 
-    /// The head of a part; its lines are read where it is called.
+    /// The head of a part; its lines are read at its call.
     fn part(&mut self, lines: &mut Lines<'a>, name: &'a str) -> Result<(), Fault> {
         let robot = &self.robot.name;
         let mut part = Part { arguments: Vec::new(), taken: 0, given: 0, body: 0, used: false };
@@ -376,7 +376,7 @@ impl<'a> Reader<'a, '_> {
         }
     }
 
-    /// The call of a part, taken in as if its lines stood here.
+    /// The call of a part; its lines are read as if they were here.
     fn call(&mut self, lines: &mut Lines<'a>, body: &mut Body<'a, '_>, function: &str, number: usize) -> Result<bool, Fault> {
         let Robot { name: robot, upper } = self.robot;
         let mut taken = Vec::new();
@@ -409,7 +409,7 @@ impl<'a> Reader<'a, '_> {
         }
         let back = std::mem::replace(&mut lines.at, part.body);
         let scope = body.enter();
-        // Of the function's arguments it knows those that it takes.
+        // It only knows those arguments of the function that it takes.
         let all = body.program.arguments.clone();
         body.program.arguments.retain(|own| part.arguments.contains(&own.name()));
         lines.expect(&format!("    {upper}_UNFUSED"))?;

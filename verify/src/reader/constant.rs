@@ -1,4 +1,4 @@
-//! Values of constants, read by their types: numbers, texts, truth values, and arrays of them.
+//! Reads values of constants by type: numbers, texts, truth values, and arrays of them.
 
 use super::lexer::{Fault, Kind, Token};
 use super::parser::{Parser, Reads};
@@ -15,19 +15,19 @@ pub enum Constant {
     Integer(u64),
     /// A truth value.
     Truth(bool),
-    /// A number: whether it is negated, and its digits.
+    /// A number: whether it is negative, and its digits.
     Number(bool, Literal),
-    /// `Real::INFINITY`, or the negative one.
+    /// `Real::INFINITY`, or its negative.
     Infinite(bool),
     /// An array.
     Array(Vec<Constant>),
 }
 
-/// Entries of an array of constants; there are at most 1024 parameters.
+/// Maximum number of entries in an array of constants; there are at most 1024 parameters.
 const MOST_ENTRIES: usize = 1024;
 
 impl Constant {
-    /// Takes a value of a type that a constant has.
+    /// Takes a value of the type of a constant.
     pub(super) fn read(parser: &mut Parser<'_>, ty: &str, real: Float) -> Result<Constant, Fault> {
         if let Some((entry, _)) = ty.strip_prefix('[').and_then(|inner| inner.rsplit_once(';')) {
             let mut entries = Vec::new();
@@ -61,7 +61,7 @@ impl Constant {
     }
 }
 
-/// A text without its quotes. What rustc writes with an escape, it writes as `\u{301}`, and so it is read.
+/// A text without its quotes. Characters that rustc escapes appear as `\u{301}`, and only those.
 fn unquoted(token: &Token<'_>) -> Result<String, Fault> {
     let inner = &token.text[1..token.text.len() - 1];
     let mut parts = inner.split('\\');
@@ -72,7 +72,7 @@ fn unquoted(token: &Token<'_>) -> Result<String, Fault> {
             .and_then(|part| part.split_once('}'))
             .ok_or_else(|| token.fault(format!("an escape in {} that is not of the form \\u{{301}}", token.shown())))?;
         let character = u32::from_str_radix(digits, 16).ok().and_then(char::from_u32);
-        // No other is written with an escape.
+        // No other character is written with an escape.
         let character = character.filter(|c| c.escape_debug().to_string() == format!("\\u{{{digits}}}") && !c.is_control());
         text.push(character.ok_or_else(|| token.fault(format!("the escape \\u{{{digits}}} is none that is written so")))?);
         text += rest;
@@ -80,14 +80,14 @@ fn unquoted(token: &Token<'_>) -> Result<String, Fault> {
     Ok(text)
 }
 
-/// An integer without a sign.
+/// An unsigned integer.
 pub(super) fn integer(token: &Token<'_>) -> Result<usize, Fault> {
     let value = token.text.parse::<usize>().ok().filter(|value| token.kind == Kind::Number && value.to_string() == token.text);
     value.ok_or_else(|| token.fault(format!("{} where an index or a count can stand", token.shown())))
 }
 
-/// A decimal number without a sign: the shortest one that is read as its float, as armgen and `{:?}` write it. So it has neither a suffix nor
-/// digits that do not count, and is neither infinite nor too small to be told from 0.
+/// An unsigned decimal number: the shortest one that rounds to its float, as armgen and `{:?}` write it. So it has no suffix, no superfluous
+/// digits, and is neither infinite nor indistinguishable from 0.
 pub(super) fn decimal(token: &Token<'_>, real: Float) -> Result<Literal, Fault> {
     if token.kind != Kind::Number {
         return Err(token.fault(format!("{} where a number can stand", token.shown())));

@@ -1,19 +1,19 @@
-//! What documentation may hold. `cargo test` runs the code blocks of documentation: a block is one of plain text, fenced as armgen fences it, and
-//! nothing else can be a block. Outside of a fence no line is indented, no two blanks follow each other (an indented block can stand inside of a list
-//! or a quotation), and no `<` begins HTML, in which a fence would be no fence.
+//! The permitted documentation. `cargo test` runs code blocks of documentation, so every block must be plain text, fenced as armgen fences it, and
+//! nothing else may form a block. Outside a fence, no line is indented, and no two blanks are adjacent, because an indented block can be nested in
+//! a list or a quotation. No `<` begins HTML, because a fence in HTML would have no effect.
 
 use super::lexer::{Fault, Kind};
 use super::parser::Parser;
 use crate::check::Check;
 
-/// Lines of the documentation of one item; that of 1024 parameters has a line for each.
+/// Maximum number of documentation lines of an item; 1024 parameters have a line each.
 const MOST_LINES: usize = 2048;
 
 const OPENS: &str = " ```text";
 const CLOSES: &str = " ```";
 
 impl<'a> Parser<'a> {
-    /// Takes the documentation that stands here, if any does, line by line.
+    /// Takes the documentation at this place, line by line; empty without documentation.
     pub(super) fn documentation(&mut self) -> Result<Vec<&'a str>, Fault> {
         let mut lines = Vec::new();
         let mut fenced = false;
@@ -46,7 +46,7 @@ impl<'a> Parser<'a> {
     }
 }
 
-/// Whether a `<` can begin HTML: with a letter, `/`, `!` or `?` behind it (CommonMark 0.31, 6.6 and 4.6).
+/// Whether a `<` can begin HTML: if a letter, `/`, `!` or `?` follows (CommonMark 0.31, 6.6 and 4.6).
 fn begins_html(text: &str) -> bool {
     text.split('<').skip(1).any(|behind| behind.starts_with(|c: char| c.is_ascii_alphabetic() || "/!?".contains(c)))
 }

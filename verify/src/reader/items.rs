@@ -1,5 +1,5 @@
-//! The items of a module. All but private functions stand here as they must be written, and their tokens are compared with these texts; of functions
-//! the bodies are left for [`body`](super::body).
+//! The items of a module. Private items are compared with texts in `sines`; all other items must have the forms in this file, token by token.
+//! The bodies of public functions are read by [`body`](super::body).
 
 use std::collections::BTreeMap;
 
@@ -14,13 +14,13 @@ use crate::program::Argument;
 use crate::reference::BASE_REGRESSOR;
 
 const LINTS: &str = "#[allow(dead_code)]";
-/// On what holds numbers of a robot: clippy finds pi and e among them.
+/// For items with numbers of a robot, among which clippy recognises pi and e.
 const ALL_LINTS: &str = "#[allow(dead_code, clippy::all)]";
 
-/// How the name of a function ends that writes its result where the caller says.
+/// Name suffix of a function that writes its result into memory of the caller.
 pub(super) const INTO: &str = "_into";
 
-/// The constants that a module may have, with their types.
+/// The permitted constants, with their types.
 const CONSTANTS: [(&str, &str); 15] = [
     ("NAME", "&str"),
     ("DOF", "usize"),
@@ -39,7 +39,7 @@ const CONSTANTS: [(&str, &str); 15] = [
     ("NOMINAL_BASE_PARAMETERS", "[Real; BASE_PARAMETERS]"),
 ];
 
-/// The struct and its fields, behind their documentation.
+/// The struct and its fields, after their documentation.
 const STRUCT: &str = "#[allow(dead_code)]\n#[derive(Clone, Copy, Debug, PartialEq)]\npub struct EquationsOfMotion {";
 const FIELDS: [&str; 3] = ["pub inertia: [[Real; DOF]; DOF],", "pub coriolis: [[Real; DOF]; DOF],", "pub gravity: [Real; DOF],"];
 
@@ -50,43 +50,43 @@ pub(super) struct Public<'a> {
     pub(super) arguments: Vec<Argument>,
     /// Its documentation, line by line.
     pub(super) documentation: Vec<&'a str>,
-    /// At the opening brace.
+    /// The parser at the opening brace.
     pub(super) body: Parser<'a>,
 }
 
-/// A part of a public function that is too long for one: `NAME_part_K`.
+/// A part of a long public function: `NAME_part_K`.
 #[derive(Clone, Debug)]
 pub(super) struct Part<'a> {
     pub(super) arguments: Vec<Argument>,
-    /// Values that it takes and gives.
+    /// Numbers of values that it takes and returns.
     pub(super) counts: [usize; 2],
-    /// At the opening brace.
+    /// The parser at the opening brace.
     pub(super) body: Parser<'a>,
-    /// At its name.
+    /// The parser at its name.
     pub(super) place: Parser<'a>,
 }
 
-/// What stands in the text, in the order of the text where it matters.
+/// The items of the text, in its order where the order matters.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Items<'a> {
-    /// The comments in front of all items.
+    /// The comments before all items.
     pub(super) head: Vec<&'a str>,
     pub(super) real: Option<Float>,
-    /// Each at its value.
+    /// Type and position of each constant's value.
     pub(super) constants: BTreeMap<&'a str, (&'static str, Parser<'a>)>,
-    /// The struct, at its documentation.
+    /// The position of the struct's documentation.
     pub(super) structure: Option<Parser<'a>>,
     pub(super) public: Vec<Public<'a>>,
-    /// The bodies of those that write their result where the caller says, by the names of the functions that return it.
+    /// The bodies of the functions that write into memory of the caller, by the names of the functions that return the same result.
     pub(super) written: BTreeMap<&'a str, Parser<'a>>,
     pub(super) parts: BTreeMap<&'a str, Part<'a>>,
     pub(super) private: Private<'a>,
 }
 
-/// Lines of the comments in front of all items.
+/// Maximum number of comment lines before all items.
 const MOST_HEAD: usize = 64;
 
-/// The types of arguments and results of a public function, as they must stand behind its name, but for a comma behind the last argument.
+/// Takes the argument and result types of a public function, which must follow its name; a comma may follow the last argument.
 fn signature(parser: &mut Parser<'_>, signature: &str) -> Result<(), Fault> {
     let mut wanted = Lexer::new(signature);
     loop {
@@ -124,7 +124,7 @@ impl<'a> Items<'a> {
         Ok(items)
     }
 
-    /// The struct and the constants of base parameters come with the functions that need them, and with no others.
+    /// The struct and the constants of base parameters occur exactly with the functions that need them.
     pub(super) fn check_companions(&self) -> Result<(), Fault> {
         if !Check::Companions.is_made() {
             return Ok(());
@@ -155,7 +155,7 @@ impl<'a> Items<'a> {
         let documentation = parser.documentation()?;
         let beginning = *parser;
         while parser.eat("#")? {
-            // As yet any: what an item must have in front of it follows from the item.
+            // Any attribute here; the item decides which attributes must precede it.
             if parser.is("[") {
                 parser.skip("[", "]")?;
             }
@@ -205,7 +205,7 @@ impl<'a> Items<'a> {
         parser.expect(";")
     }
 
-    /// A public constant; its value is read where `Real` is known.
+    /// A public constant; its value is read once `Real` is known.
     fn constant(&mut self, parser: &mut Parser<'a>, head: Head<'a>) -> Result<(), Fault> {
         let name = head.name;
         let known = CONSTANTS.into_iter().find(|(known, _)| name.is(known));
@@ -222,7 +222,7 @@ impl<'a> Items<'a> {
         parser.expect(";")
     }
 
-    /// The struct of what `equations_of_motion` gives.
+    /// The result type of `equations_of_motion`.
     fn structure(&mut self, parser: &mut Parser<'a>, head: &Head<'a>) -> Result<(), Fault> {
         parser.expect(STRUCT)?;
         for field in FIELDS {
@@ -236,7 +236,7 @@ impl<'a> Items<'a> {
         }
     }
 
-    /// A public function: its signature; the body is read where all items are known.
+    /// A public function with its signature; the body is read once all items are known.
     fn function(&mut self, parser: &mut Parser<'a>, head: Head<'a>) -> Result<(), Fault> {
         let name = head.name;
         let (promise, with) = Promise::of(name.text)
@@ -255,7 +255,7 @@ impl<'a> Items<'a> {
         parser.skip("{", "}")
     }
 
-    /// A function that writes the result of another where the caller says; its body is read with that one.
+    /// A function that writes the result of another into memory of the caller; its body is read with that function.
     fn written(&mut self, parser: &mut Parser<'a>, head: &Head<'a>) -> Result<(), Fault> {
         let name = head.name;
         let whole = name.text.strip_suffix(INTO).and_then(|whole| Some((whole, Promise::of(whole)?)));
@@ -276,7 +276,7 @@ impl<'a> Items<'a> {
         parser.skip("{", "}")
     }
 
-    /// A private function or constant, whose tokens are compared as a whole where `Real` is known.
+    /// A private function or constant; its tokens are compared as a whole once `Real` is known.
     fn private_item(&mut self, parser: &mut Parser<'a>, head: &Head<'a>) -> Result<(), Fault> {
         let name = head.name;
         if !sines::NAMES.contains(&name.text) && Check::PrivateNames.is_made() {
@@ -287,7 +287,7 @@ impl<'a> Items<'a> {
         }
         let last = if head.keyword.is("fn") { "{" } else { ";" };
         while !parser.is(last) && parser.peek().kind != Kind::End {
-            // The type of an array has a `;` of its own.
+            // The type of an array contains a `;`.
             if parser.is("[") {
                 parser.skip("[", "]")?;
             } else {
@@ -304,7 +304,7 @@ impl<'a> Items<'a> {
 
 /// The first tokens of an item.
 struct Head<'a> {
-    /// Where it begins, behind its documentation.
+    /// Its first token, after the documentation.
     beginning: Parser<'a>,
     keyword: Token<'a>,
     name: Token<'a>,
@@ -312,7 +312,7 @@ struct Head<'a> {
     documentation: Vec<&'a str>,
 }
 
-/// Behind `fn`: `gravity_part_1(q: &[Real; DOF], values: [Real; 3]) -> [Real; 5] { ... }`.
+/// After `fn`: `gravity_part_1(q: &[Real; DOF], values: [Real; 3]) -> [Real; 5] { ... }`.
 fn part<'a>(parser: &mut Parser<'a>, place: Parser<'a>) -> Result<Part<'a>, Fault> {
     parser.take()?;
     let mut arguments = Vec::new();

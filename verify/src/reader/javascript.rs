@@ -1,4 +1,4 @@
-//! Reads a module in JavaScript.
+//! Reads a JavaScript module.
 //!
 //! ```text
 //! module   = constants check [ sines ] [ sign ] [ stribeck ] { { part } function }
@@ -62,7 +62,7 @@ pub(super) fn read(text: &str) -> Result<Module, Fault> {
     };
     let mut trig = None;
     if begins(&lines, FAST, 0)? {
-        // The two blocks begin alike.
+        // The two blocks have the same first lines.
         let fast = begins(&lines, FAST, 2)?;
         trig = Some(if fast { "fast" } else { "std" });
         lines.expect_all(if fast { FAST } else { STD }, COMMENTS)?;
@@ -168,7 +168,7 @@ impl<'a> Functions<'a> for Reader<'a, '_> {
 }
 
 impl<'a> Reader<'a, '_> {
-    /// A number, or an array with its rows in lines.
+    /// A number, or an array with a row per line.
     #[expect(clippy::too_many_arguments, reason = "how a line begins, goes on and ends, and what stands there")]
     fn array(
         &self,
@@ -206,7 +206,7 @@ impl<'a> Reader<'a, '_> {
         }
     }
 
-    /// The head of a part; its lines are read where it is called.
+    /// The head of a part; its lines are read at its call.
     fn part(&mut self, lines: &mut Lines<'a>) -> Result<(), Fault> {
         let line = lines.number();
         let (name, arguments) = lines.between("function ", ") {")?.split_once('(').unwrap_or_default();
@@ -225,7 +225,7 @@ impl<'a> Reader<'a, '_> {
         self.parts.add(name, arguments, body, line)
     }
 
-    /// The call of a part, taken in as if its lines stood here.
+    /// The call of a part; its lines are read as if they were here.
     fn call(&mut self, lines: &mut Lines<'a>, body: &mut Body<'a, '_>, function: &str, number: usize) -> Result<bool, Fault> {
         let begin = format!("    const given{number} = {function}Part{number}(");
         if !lines.peek().starts_with(&begin) {

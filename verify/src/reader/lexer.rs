@@ -1,8 +1,9 @@
-//! From the text of a module to its tokens, each with its line.
+//! Splits the text of a module into tokens with line numbers.
 //!
-//! Taken are ASCII letters, digits and signs, blanks and line feeds; in comments and between quotes also what can be seen of Unicode. Whatever
-//! rustc would normalise, join or skip is refused: other identifiers (two spellings can be one name), carriage returns, tabs, a byte order mark,
-//! raw identifiers, prefixed texts, block comments, characters that cannot be seen or that turn the direction of writing.
+//! Code may contain ASCII letters, digits and signs, blanks and line feeds; comments and string literals also visible Unicode characters. The
+//! lexer refuses text that rustc would normalise, join or skip: non-ASCII identifiers (two spellings can be the same name), carriage returns,
+//! tabs, a byte order mark, raw identifiers, prefixed literals and block comments. It also refuses characters that are invisible or change the
+//! writing direction.
 
 use std::fmt;
 
@@ -10,12 +11,12 @@ pub(crate) use armgen_description::source::is_hidden;
 
 use crate::check::Check;
 
-/// What is wrong with a text, and where.
+/// A fault of a text, with its place.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Fault {
     /// The line, counted from 1.
     pub line: usize,
-    /// What is wrong.
+    /// The reason.
     pub reason: String,
 }
 
@@ -35,11 +36,11 @@ impl From<Fault> for String {
 pub(super) enum Kind {
     /// A name or a keyword.
     Word,
-    /// A number, however it is spelled.
+    /// A number in any spelling.
     Number,
-    /// A text with its quotes.
+    /// A string literal with its quotes.
     Text,
-    /// A sign, one that compilers take for one token.
+    /// A sign, as compilers tokenise it.
     Sign,
     /// A line `/// ...`.
     Documentation,
@@ -52,7 +53,7 @@ pub(super) enum Kind {
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Token<'a> {
     pub(super) kind: Kind,
-    /// Its text; of documentation and comments what follows the slashes.
+    /// Its text; for documentation and comments the text after the slashes.
     pub(super) text: &'a str,
     pub(super) line: usize,
 }
@@ -66,7 +67,7 @@ impl Token<'_> {
         Fault { line: self.line, reason: reason.into() }
     }
 
-    /// For a message.
+    /// A short form for messages.
     pub(super) fn shown(&self) -> String {
         let text: String = self.text.chars().take(60).collect();
         match self.kind {
@@ -78,12 +79,12 @@ impl Token<'_> {
     }
 }
 
-/// Signs of more than one character, longer ones first, as rustc puts them together.
+/// Signs of several characters, longer ones first, as rustc joins them.
 const JOINED: [&str; 25] = [
     "<<=", ">>=", "...", "..=", "&&", "||", "<<", ">>", "+=", "-=", "*=", "/=", "^=", "%=", "&=", "|=", "==", "!=", ">=", "<=",
     "->", "=>", "<-", "::", "..",
 ];
-/// Which characters are the second one of these, by their code.
+/// Whether a character can be the second of such a sign, by its code.
 const SECOND: [bool; 128] = {
     let (mut second, mut i) = ([false; 128], 0);
     while i < JOINED.len() {
@@ -94,7 +95,7 @@ const SECOND: [bool; 128] = {
 };
 const SINGLE: &str = "#[](){}<>,;:=+-*/&|!.^%";
 
-/// A place in a text, from which tokens are read.
+/// A position in a text, for reading tokens.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Lexer<'a> {
     rest: &'a str,
@@ -158,7 +159,7 @@ impl<'a> Lexer<'a> {
         }
     }
 
-    /// Whether every character of a comment or a text can be seen.
+    /// Checks that all characters of a comment or a literal are visible.
     fn visible(&self, text: &str) -> Result<(), Fault> {
         match text.chars().find(|c| is_hidden(*c) && Check::Visible.is_made()) {
             None => Ok(()),
@@ -189,7 +190,7 @@ impl<'a> Lexer<'a> {
         Ok(self.split(Kind::Text, end + 2))
     }
 
-    /// What rustc reads as one number, whether or not it has a form that emitted modules know.
+    /// A number by rustc's rules, whether or not emitted modules use this form.
     fn number(&mut self) -> Token<'a> {
         let bytes = self.rest.as_bytes();
         let word = |from: usize| from + bytes[from..].iter().position(|b| !is_word(char::from(*b))).unwrap_or(bytes.len() - from);

@@ -1,4 +1,4 @@
-//! Reads a package in MATLAB, its files as one text.
+//! Reads a MATLAB package, joined into one text.
 //!
 //! ```text
 //! package  = { %%% FILE  file }                    files in the order of their names: Contents.m, which is a comment, model.m, functions
@@ -30,10 +30,10 @@ const STRIBECK: &str = include_str!("matlab/stribeck.m");
 const STD: &str = include_str!("matlab/std.m");
 const FAST: &str = include_str!("matlab/sines.m");
 
-/// What the line in front of a file begins with, behind which its name stands.
+/// Prefix of the line before each file; the file name follows.
 pub(super) const FILE: &str = "%%% ";
 
-/// The files of a package, names and texts, as the one text that is read; the name of one that would not be one file there, with the reason.
+/// Joins the files of a package, given by names and texts; an error gives the name of a file that would not stay a single file, with the reason.
 pub fn joined(mut files: Vec<(String, String)>) -> Result<String, (String, &'static str)> {
     files.sort();
     let mut all = String::new();
@@ -53,13 +53,13 @@ pub fn joined(mut files: Vec<(String, String)>) -> Result<String, (String, &'sta
     Ok(all)
 }
 
-/// The file that a line of the one text is of, and the line there.
+/// The file and the line in it for a line of the joined text.
 pub fn file_of(text: &str, line: usize) -> Option<(&str, usize)> {
     let before = text.split('\n').zip(1..=line).filter_map(|(text, number)| Some((text.strip_prefix(FILE)?, number)));
     before.last().map(|(name, number)| (name, line - number))
 }
 
-/// A file: its name, its text, and the lines of other files in front of it.
+/// A file: its name, its text, and the number of lines before it.
 struct File<'a> {
     name: &'a str,
     text: &'a str,
@@ -69,7 +69,7 @@ struct File<'a> {
 impl<'a> File<'a> {
     fn lines(&self) -> Result<Lines<'a>, Fault> {
         let lines = Lines::new(self.text, COMMENTS).map_err(|fault| Fault { line: fault.line + self.before, ..fault })?;
-        // Alone in a line these begin and end a comment of many lines.
+        // Alone in a line, these begin and end a block comment.
         let braces = |line: &str| matches!(line.strip_prefix('%').map(str::trim), Some("{" | "}"));
         match self.text.split('\n').position(braces) {
             Some(at) => {
@@ -166,7 +166,7 @@ fn constants(lines: &mut Lines<'_>) -> Result<BTreeMap<String, Constant>, Fault>
         let value = lines.between(&begin, ";")?;
         let value = form.read(name, value, number)?;
         let value = match value {
-            // Rows are counted from 1 here.
+            // MATLAB counts rows from 1.
             Constant::Array(rows) if name == "TASK" => {
                 let from_0 = |row: &Constant| match row {
                     Constant::Integer(row) => row.checked_sub(1).map(Constant::Integer),
@@ -186,7 +186,7 @@ fn constants(lines: &mut Lines<'_>) -> Result<BTreeMap<String, Constant>, Fault>
     }
 }
 
-/// Indices or lengths with those of a list of matrices behind rows and columns.
+/// Indices or lengths in MATLAB's order for a list of matrices: the list index follows row and column.
 fn paged(indices: &[usize]) -> Vec<usize> {
     match indices {
         [page, row, column] => vec![*row, *column, *page],
@@ -206,7 +206,7 @@ struct Reader<'r> {
 }
 
 impl Reader<'_> {
-    /// The function of a file, parts and all.
+    /// The function of a file, with its parts.
     fn file(&mut self, file: &File<'_>) -> Result<(String, Function), Fault> {
         let mut lines = file.lines()?;
         let begin = |reason: String| Fault { line: file.before + 1, reason };
@@ -215,7 +215,7 @@ impl Reader<'_> {
         let (own, (promise, arguments)) = known
             .and_then(|own| Some((own.clone(), promised(&own)?)))
             .ok_or_else(|| begin(format!("`{}` is not a file that an emitted package has", file.name)))?;
-        // Parts stand behind the functions that call them.
+        // Parts follow the functions that call them.
         let mut parts = Parts::default();
         let begins = lines.all.iter().enumerate().filter(|(_, line)| line.text.starts_with("function "));
         lines.at = begins.map(|(at, _)| at).nth(2).unwrap_or(lines.all.len());
@@ -257,7 +257,7 @@ impl Reader<'_> {
         }
     }
 
-    /// The function itself, which hands its arguments on; its documentation.
+    /// The function itself, which passes its arguments on; returns its documentation.
     fn in_blocks(
         &self,
         lines: &mut Lines<'_>,
@@ -304,7 +304,7 @@ impl Reader<'_> {
         Ok(documentation.into_iter().map(String::from).collect())
     }
 
-    /// The function for a block of states, and whether it needs sines, signs and what is left of Stribeck friction.
+    /// The function for a block of states, and whether it needs sines, signs and Stribeck friction.
     fn block<'a>(
         &mut self,
         lines: &mut Lines<'a>,
@@ -361,7 +361,7 @@ impl Reader<'_> {
         Ok((body.program, body.asks))
     }
 
-    /// The lengths of a result, of a number as well.
+    /// The lengths of a result, also for a number.
     fn lengths(&self, array: &[Length]) -> Vec<usize> {
         let lengths: Vec<usize> = array.iter().map(|length| length.of(&self.sizes)).collect();
         paged(if lengths.is_empty() { &[1] } else { &lengths })
@@ -373,7 +373,7 @@ fn results(promise: &Promise) -> Vec<String> {
     promise.returned.named().iter().map(|(name, _)| camel(name)).collect()
 }
 
-/// Names with commas between, in brackets where they are several.
+/// Names separated by commas, in brackets if there are several.
 fn listed(names: &[String]) -> String {
     match names {
         [one] => one.clone(),
@@ -381,7 +381,7 @@ fn listed(names: &[String]) -> String {
     }
 }
 
-/// The head of a part; its lines are read where it is called.
+/// The head of a part; its lines are read at its call.
 fn part<'a>(parts: &mut Parts<'a>, lines: &mut Lines<'a>) -> Result<(), Fault> {
     let line = lines.number();
     let (name, arguments) = lines.between("function given = ", ")")?.split_once('(').unwrap_or_default();
@@ -400,7 +400,7 @@ fn part<'a>(parts: &mut Parts<'a>, lines: &mut Lines<'a>) -> Result<(), Fault> {
     parts.add(name, arguments, body, line)
 }
 
-/// The call of a part, taken in as if its lines stood here.
+/// The call of a part; its lines are read as if they were here.
 fn call<'a>(
     parts: &mut Parts<'a>,
     lines: &mut Lines<'a>,

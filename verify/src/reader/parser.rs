@@ -1,9 +1,9 @@
-//! Tokens one after the other, compared with what must stand there.
+//! Reads tokens in sequence and compares them with the required ones.
 
 use super::lexer::{Fault, Kind, Lexer, Token};
 use crate::check::Check;
 
-/// A place in a text with the token that stands there; a copy is a place to come back to.
+/// A position in a text with its token; a copy allows backtracking.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Parser<'a> {
     after: Lexer<'a>,
@@ -17,7 +17,7 @@ impl<'a> Parser<'a> {
         Ok(Parser { after, token })
     }
 
-    /// The token that stands here.
+    /// The current token.
     pub(super) fn peek(&self) -> Token<'a> {
         self.token
     }
@@ -26,14 +26,14 @@ impl<'a> Parser<'a> {
         self.token.is(text)
     }
 
-    /// The token that stands here; the next one is here afterwards.
+    /// Returns the current token and advances.
     pub(super) fn take(&mut self) -> Result<Token<'a>, Fault> {
         let token = self.token;
         self.token = self.after.next()?;
         Ok(token)
     }
 
-    /// Takes a token if it stands here.
+    /// Takes a token if it is the current one.
     pub(super) fn eat(&mut self, text: &str) -> Result<bool, Fault> {
         let found = self.is(text);
         if found {
@@ -42,7 +42,7 @@ impl<'a> Parser<'a> {
         Ok(found)
     }
 
-    /// Takes the tokens of a text, which must stand here, but for documentation.
+    /// Takes the tokens of a text, which must follow here; the words of its documentation are free.
     pub(super) fn expect(&mut self, text: &str) -> Result<(), Fault> {
         let mut wanted = Lexer::new(text);
         loop {
@@ -50,7 +50,7 @@ impl<'a> Parser<'a> {
             if want.kind == Kind::End {
                 return Ok(());
             }
-            // Within an item its documentation stands where it should, in whatever words.
+            // Documentation must occur at the required place within an item, with any words.
             if want.kind == Kind::Documentation {
                 self.documentation()?;
                 continue;
@@ -69,7 +69,7 @@ impl<'a> Parser<'a> {
         }
     }
 
-    /// The same of a text in which all brackets hold lists, behind whose last entry the formatter may put a comma.
+    /// The same for a text whose brackets all contain lists; the formatter may put a comma after the last entry.
     pub(super) fn expect_lists(&mut self, text: &str) -> Result<(), Fault> {
         let mut wanted = Lexer::new(text);
         loop {
@@ -84,7 +84,7 @@ impl<'a> Parser<'a> {
         }
     }
 
-    /// Goes behind the bracket that closes the one that stands here; other kinds of brackets are not counted.
+    /// Skips to the end of the current bracket; ignores other kinds of brackets.
     pub(super) fn skip(&mut self, open: &str, close: &str) -> Result<(), Fault> {
         let (first, mut deep) = (self.token, 0usize);
         loop {
@@ -106,11 +106,11 @@ impl<'a> Parser<'a> {
     }
 }
 
-/// What reads from a parser.
+/// A reader that uses a parser.
 pub(super) trait Reads<'a> {
     fn parser(&mut self) -> &mut Parser<'a>;
 
-    /// What stands between two brackets, separated by commas, of which one more may stand at the end; behind the opening bracket.
+    /// The entries up to a closing bracket, separated by commas, with an optional final comma; starts after the opening bracket.
     fn list(&mut self, close: &str, mut entry: impl FnMut(&mut Self) -> Result<(), Fault>) -> Result<(), Fault> {
         while !self.parser().eat(close)? {
             entry(self)?;

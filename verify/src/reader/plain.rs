@@ -1,8 +1,8 @@
-//! What the readers of languages other than Rust share: lines, and what stands in a line.
+//! Common parts of the readers for languages other than Rust: lines and their contents.
 //!
-//! An emitted file is taken as it was written, line by line: what is the same in every module is compared with texts that stand here once
-//! more, and where a line is a robot's own, it has one of a few forms, blanks included. So nothing that a language would read differently
-//! (ends of lines, indentation, continued lines, operators of two characters) can stand anywhere.
+//! An emitted file is read line by line in its original form. Lines common to all modules are compared with texts stored here; each other line has
+//! one of a few forms, including blanks. So no text can occur that a language would read differently (line ends, indentation, continued lines,
+//! operators of two characters).
 //!
 //! ```text
 //! sum     = product { (" + " | " - ") product }          product = factor { (" * " | " / ") factor }
@@ -26,25 +26,25 @@ use super::Function;
 use crate::contract::Promise;
 use crate::program::Argument;
 
-/// The function of a name, its arguments, and whether it takes parameters.
+/// The function with this name, its arguments, and whether it takes parameters.
 pub(super) fn promised(name: &str) -> Option<(&'static Promise, Vec<Argument>)> {
     let (promise, with) = Promise::of(name)?;
     let arguments = with.then_some("pi").into_iter().chain(promise.arguments.iter().copied());
     Some((promise, arguments.filter_map(Argument::named).collect()))
 }
 
-/// What stands behind the constants of a module: functions, and what belongs to them.
+/// The functions after the constants of a module, with everything that belongs to them.
 pub(super) trait Functions<'a> {
-    /// Takes a function; nothing where something else stands here: a part of one, the type of its results.
+    /// Takes a function; `None` for another item, such as a part of a function or a result type.
     fn item(&mut self, lines: &mut Lines<'a>) -> Result<Option<(String, Function)>, Fault>;
 
-    /// A part that no function calls.
+    /// A part without a call.
     fn unused(&self) -> Option<&'a str>;
 
-    /// Whether functions use sines, signs, and what is left of Stribeck friction.
+    /// Whether the functions use sines, signs, and Stribeck friction.
     fn asks(&self) -> [bool; 3];
 
-    /// Takes all functions, up to a line or the end of the text; `has`: whether the module has these.
+    /// Takes all functions up to a line or the end of the text; `has`: whether the module has sines, signs and Stribeck friction.
     fn all(&mut self, lines: &mut Lines<'a>, end: &str, has: [bool; 3]) -> Result<Vec<(String, Read)>, Fault> {
         let mut functions: Vec<(String, Read)> = Vec::new();
         while !lines.ended() && !lines.is(end) {
@@ -66,10 +66,10 @@ pub(super) trait Functions<'a> {
     }
 }
 
-/// A function, or what is wrong with it.
+/// A function or its fault.
 type Read = Result<Function, String>;
 
-/// The names of all functions that a module may have.
+/// The names of all possible functions.
 pub(super) fn names_of() -> impl Iterator<Item = String> {
     let forms = |promise: &Promise| [promise.name.to_string(), format!("{}_with", promise.name)];
     crate::reference::PROMISES.iter().flat_map(forms).filter(|name| Promise::of(name).is_some())

@@ -1,4 +1,4 @@
-//! Reads a module in Python.
+//! Reads a Python module.
 //!
 //! ```text
 //! module   = imports names constants arrays [ sines ] [ sign ] [ stribeck ] { [ class ] { part } function }
@@ -36,7 +36,7 @@ fn tuple(entries: &[String]) -> String {
     }
 }
 
-/// The entries of a tuple as it is written.
+/// The entries of a tuple in its source form.
 fn entries(text: &str, line: usize) -> Result<Vec<&str>, Fault> {
     let inner = match text {
         "()" => return Ok(Vec::new()),
@@ -46,7 +46,7 @@ fn entries(text: &str, line: usize) -> Result<Vec<&str>, Fault> {
     Ok(inner.split(", ").collect())
 }
 
-/// The type that holds the results of a function that has several.
+/// The result type of a function with several results.
 pub(crate) fn structure(promise: &Promise) -> Option<String> {
     let capital = |word: &str| word[..1].to_uppercase() + &word[1..];
     (!matches!(promise.returned, Returned::One(_))).then(|| promise.name.split('_').map(capital).collect())
@@ -94,7 +94,7 @@ pub(super) fn read(text: &str) -> Result<Module, Fault> {
     let mut trig = None;
     for (block, name) in [(if real == Float::F64 { FAST_F64 } else { FAST_F32 }, "fast"), (STD, "std")] {
         let own = Lines::new(block, COMMENTS)?;
-        // Their first lines are alike.
+        // They have the same first line.
         let second = |lines: &Lines<'_>, at: usize| lines.all.get(at + 1).map(|line| line.text.to_string());
         if trig.is_none() && lines.is(own.peek()) && second(&lines, lines.at) == second(&own, 0) {
             lines.expect_all(block, COMMENTS)?;
@@ -228,7 +228,7 @@ impl<'a> Functions<'a> for Reader<'a, '_> {
 }
 
 impl<'a> Reader<'a, '_> {
-    /// An array with its entries in lines: how it begins, the indent, how it ends.
+    /// An array with an entry per line: its beginning, its indent, its end.
     fn array(
         &self,
         lines: &mut Lines<'a>,
@@ -248,7 +248,7 @@ impl<'a> Reader<'a, '_> {
         lines.expect(&format!("{indent})){end}"))
     }
 
-    /// A type that holds several results.
+    /// A type for several results.
     fn class(&mut self, lines: &mut Lines<'a>) -> Result<(), Fault> {
         let name = lines.between("class ", "(NamedTuple):")?;
         let promise =
@@ -264,7 +264,7 @@ impl<'a> Reader<'a, '_> {
         Ok(())
     }
 
-    /// The head of a part; its lines are read where it is called.
+    /// The head of a part; its lines are read at its call.
     fn part(&mut self, lines: &mut Lines<'a>) -> Result<(), Fault> {
         let line = lines.number();
         let text = lines.between("def _", "taken: tuple[Any, ...]) -> tuple[Any, ...]:")?;
@@ -281,7 +281,7 @@ impl<'a> Reader<'a, '_> {
         self.parts.add(name, arguments, body, line)
     }
 
-    /// The call of a part, taken in as if its lines stood here.
+    /// The call of a part; its lines are read as if they were here.
     fn call(&mut self, lines: &mut Lines<'a>, body: &mut Body<'a, '_>, function: &str, number: usize) -> Result<bool, Fault> {
         let name = format!("{function}_part_{number}");
         let begin = format!("    given_{number} = _{name}(xp, ");

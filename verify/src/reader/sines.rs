@@ -1,8 +1,8 @@
-//! The private functions that answer for sine, cosine, sign and what is left of Stribeck friction, which equations take as inputs, and the barrier, which
-//! computes nothing: no equation can judge them, and they are accepted by their texts alone.
+//! The private functions for sine, cosine, sign and Stribeck friction, which the equations treat as inputs, and the barrier, which computes nothing.
+//! No equation can judge them, so only their exact texts are accepted.
 //!
-//! The texts stand here once more, and are not those of the generator taken in: what is right is decided where it is checked. Whoever changes the
-//! generator's block of sines (`codegen/src/emit/rust/sincos`) has to find the new one right and copy it, as it is emitted, to `sines/`.
+//! The texts are separate copies, not the generator's own, because the checker decides whether they are correct. After a change of the generator's
+//! block of sines (`codegen/src/emit/rust/sincos`), review the new block and copy its emitted form to `sines/`.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -22,7 +22,7 @@ const STRIBECK: &str = include_str!("sines/stribeck.rs");
 const FAST_F64: &str = include_str!("sines/fast_f64.rs");
 const FAST_F32: &str = include_str!("sines/fast_f32.rs");
 
-/// All names.
+/// All names of private items.
 pub(super) const NAMES: [&str; 22] = [
     "barrier",
     "sign",
@@ -48,13 +48,13 @@ pub(super) const NAMES: [&str; 22] = [
     "sin_cos_each_of_eight",
 ];
 
-/// What every module with the fast sines has, and no other.
+/// An item that only modules with the fast sines have.
 const OF_FAST: &str = "SIN_COS_RANGE";
 
-/// Private items by name, each behind its documentation.
+/// Private items by name, each positioned after its documentation.
 pub(super) type Private<'a> = BTreeMap<&'a str, Parser<'a>>;
 
-/// The texts of the items of a block by their names.
+/// The texts of a block's items, by name.
 fn items(block: &'static str) -> impl Iterator<Item = (&'static str, &'static str)> {
     block.trim_end().split("\n\n").map(|item| {
         let begins = |line: &'static str| line.strip_prefix("fn ").or_else(|| line.strip_prefix("const "));
@@ -69,7 +69,7 @@ fn fast_of(private: &Private<'_>, real: Float) -> Option<BTreeMap<&'static str, 
     private.contains_key(OF_FAST).then(|| items(text).collect())
 }
 
-/// Compares the private items with the texts that they must have; where the sines come from.
+/// Compares the private items with their required texts; returns the source of the sines.
 pub(super) fn check(private: &Private<'_>, real: Float) -> Result<Option<&'static str>, Fault> {
     let fast = fast_of(private, real);
     let mut trig = fast.is_some().then_some("fast");
@@ -101,7 +101,7 @@ pub(super) fn check(private: &Private<'_>, real: Float) -> Result<Option<&'stati
     Ok(trig)
 }
 
-/// Whether exactly those private items are there that the calls of some functions need, and those that such items need themselves.
+/// Checks that the private items are exactly those that functions call, and those that these items need.
 pub(super) fn check_calls(private: &Private<'_>, calls: &BTreeSet<&'static str>, real: Float) -> Result<(), Fault> {
     let fast = fast_of(private, real).unwrap_or_default();
     let (mut needed, mut new) = (BTreeSet::new(), calls.clone());
@@ -121,7 +121,7 @@ pub(super) fn check_calls(private: &Private<'_>, calls: &BTreeSet<&'static str>,
     }
 }
 
-/// The words of one of the texts here, outside of comments.
+/// The words of a text in this module, outside comments.
 fn words(text: &'static str) -> Result<BTreeSet<&'static str>, Fault> {
     let (mut lexer, mut words) = (Lexer::new(text), BTreeSet::new());
     loop {
@@ -142,8 +142,8 @@ mod tests {
     use armgen_description::kinds::Scalar;
     use armgen_description::source::Source;
 
-    /// Where this fails, the generator's block has changed: decide whether the new one is right, then copy it. One arm has the functions for four
-    /// angles, for one and for a sine alone, the other those for eight.
+    /// If this fails, the generator's block has changed: review the new block, then copy it. The first arm has the functions for four angles, for one
+    /// and for a single sine; the second arm has those for eight.
     #[test]
     fn the_blocks_are_those_that_are_emitted() {
         for (scalar, block) in [(Scalar::F64, FAST_F64), (Scalar::F32, FAST_F32)] {

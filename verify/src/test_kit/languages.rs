@@ -1,4 +1,4 @@
-//! The test file in other languages than Rust: the reference values as each writes them, in front of what is the same for every robot.
+//! The test file in other languages than Rust: the reference values in the notation of the language, then the part common to all robots.
 
 use std::fmt::Write;
 
@@ -11,7 +11,7 @@ use crate::float::Arguments;
 use crate::marked::{marked, LOAD};
 use crate::reader::{camel, in_the_name_of};
 
-/// The template of a language, behind its line BEGIN; `sign`: how its comments begin.
+/// The template of a language, after its line BEGIN; `sign` begins a comment.
 fn template(text: &'static str, sign: &str, kit: &Kit) -> String {
     let template = text.split_once("BEGIN").and_then(|(_, rest)| rest.split_once('\n')).map_or("", |(_, rest)| rest);
     marked(template, sign, &[(LOAD, kit.loaded)])
@@ -23,7 +23,7 @@ fn named(state: &Arguments<f64>) -> [(&'static str, &[f64]); 7] {
     [("q", q), ("dq", dq), ("ddq", ddq), ("dqr", dqr), ("ddqr", ddqr), ("tau", tau), ("pi", pi)]
 }
 
-/// The test file: `module` is what the module is called where it is taken in, a file, a module or a package.
+/// The test file; `module` is the name of the imported file, module or package.
 pub(super) fn print(kit: &Kit, language: Language, module: &str, origin: &Origin) -> String {
     let mark = match language {
         Language::C | Language::JavaScript | Language::Rust => "//",
@@ -47,7 +47,7 @@ pub(super) fn print(kit: &Kit, language: Language, module: &str, origin: &Origin
     }
 }
 
-/// The arguments of a call, each as `of_state` writes it.
+/// The arguments of a call, each written by `of_state`.
 fn arguments(value: &Value, of_state: &dyn Fn(&str) -> String) -> String {
     let names = value.with.then_some("pi").into_iter().chain(value.promise.arguments.iter().copied());
     names.map(of_state).collect::<Vec<_>>().join(", ")
@@ -127,7 +127,7 @@ fn c(kit: &Kit, module: &str) -> String {
     };
     let epsilon = if kit.real == Float::F32 { "FLT_EPSILON" } else { "DBL_EPSILON" };
     let mut text = format!("#include <float.h>\n#include <stdio.h>\n\n#include {module:?}\n\n#define EPSILON {epsilon}\n\n/* States at which values are known. */\n");
-    // Without the base parameters of a robot, whose functions with them are judged by those without.
+    // Base parameters are omitted, because the functions without them are tested.
     let with = kit.values.iter().any(|value| value.with);
     for (name, _) in named(&kit.states[0]).into_iter().filter(|(name, _)| with || *name != "pi") {
         let length = if name == "pi" { "ROBOT_PARAMETERS" } else { "ROBOT_DOF" };
@@ -156,7 +156,7 @@ fn c(kit: &Kit, module: &str) -> String {
             at += lengths.iter().map(|length| length.of(&kit.sizes)).product::<usize>();
         }
         let call = format!("{}robot_{name}({call});", if number { "found[0] = " } else { "" });
-        // An inverse loses what the condition of its matrix takes.
+        // An inverse loses accuracy in proportion to the condition number of its matrix.
         let inverse = name == "operational_inertia" || name.starts_with("forward_dynamics");
         let lost = if inverse { "256 * ROUNDING" } else { "ROUNDING" };
         let entries = value.entries.len();

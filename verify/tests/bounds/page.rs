@@ -1,6 +1,6 @@
-//! Whether docs/error-bounds.md and benches/results/error-bounds describe the current modules. Errors are measured by hand, for an hour; the bounds in
-//! the same tables follow from the text of a module alone. A module with other bounds has changed since it was measured; one with the same bounds may
-//! have changed, too.
+//! Whether docs/error-bounds.md and benches/results/error-bounds describe the current modules. The errors take an hour to measure, so this runs
+//! manually; the bounds in the same tables follow from a module's text alone. A module with other bounds has changed since its measurement; even
+//! with the same bounds it may have changed.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
@@ -13,13 +13,13 @@ use super::{common, robot};
 const PAGE: &str = include_str!("../../../docs/error-bounds.md");
 const COLUMNS: usize = 11;
 
-/// The measured table of a robot: the first line of its file, and the rows by the names of their functions.
+/// The measured table of a robot: the first line of its file, and the rows by function name.
 struct Table {
     summary: String,
     rows: BTreeMap<String, Vec<String>>,
 }
 
-/// The tables in f64 by the names of their robots.
+/// The f64 tables by robot name.
 fn tables() -> BTreeMap<String, Table> {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../benches/results/error-bounds");
     let files = std::fs::read_dir(folder).expect("a folder").map(|entry| entry.expect("an entry").path());
@@ -37,7 +37,7 @@ fn tables() -> BTreeMap<String, Table> {
         .collect()
 }
 
-/// The cells of the rows of a table of the page, by the first cell.
+/// The cells of each row in a table of the page, by the first cell.
 fn on_the_page(head: &str) -> BTreeMap<&'static str, Vec<&'static str>> {
     let table = PAGE.split(head).nth(1).expect("a table");
     let rows = table.lines().skip(2).take_while(|line| line.starts_with('|'));

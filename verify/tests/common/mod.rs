@@ -24,12 +24,12 @@ fn in_folders(folders: &[&str]) -> Vec<PathBuf> {
     paths
 }
 
-/// Those that are made to be hard on armgen.
+/// Descriptions designed to stress armgen.
 pub(crate) fn hostile_paths() -> Vec<PathBuf> {
     in_folders(&["tests/robots/hostile"])
 }
 
-/// A description of the project by its name.
+/// A description of the project by name.
 pub(crate) fn source(name: &str) -> Source {
     let path = paths()
         .into_iter()
@@ -39,13 +39,13 @@ pub(crate) fn source(name: &str) -> Source {
     Source::new(format!("{name}.yaml"), std::fs::read_to_string(path).expect("a description"))
 }
 
-/// What the generator makes of it.
+/// The generated module of a description.
 pub(crate) fn generate(source: &Source, scalar: Scalar) -> Generated {
     #[allow(clippy::needless_update)]
     generate_with(source, &Options { scalar, ..Options::default() })
 }
 
-/// What the generator makes of it with these options.
+/// The generated module with these options.
 pub(crate) fn generate_with(source: &Source, options: &Options) -> Generated {
     let (generated, diagnostics) = armgen_codegen::generate(source, options);
     generated.unwrap_or_else(|| panic!("{diagnostics:?}"))

@@ -1,44 +1,44 @@
-//! Small changes of a module's text, each at one place.
+//! Small changes of a module's text at a single place.
 
 use syn::{BinOp, Expr, File, Item, Lit, Stmt, UnOp};
 
 /// Kinds of change.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub(crate) enum Kind {
-    /// + for -, or - for +, or a minus sign put before an operand or taken away.
+    /// + for -, - for +, or an added or removed minus sign before an operand.
     Sign,
     /// A digit of a literal.
     Digit,
-    /// The operands of a difference or a quotient in the other order.
+    /// Swapped operands of a difference or a quotient.
     Swapped,
-    /// One operand for another.
+    /// An operand in place of another.
     Operand,
-    /// A term or a factor left out.
+    /// An omitted term or factor.
     Dropped,
 }
 
-/// A change: where it is and what was done.
+/// A change: its place and its kind.
 #[derive(Clone, Debug)]
 pub(crate) struct Change {
     /// Function or constant.
     pub(crate) name: String,
     /// Its kind.
     pub(crate) kind: Kind,
-    /// Before and after: read when a change is printed.
+    /// Before and after, for printing.
     #[allow(dead_code)]
     pub(crate) what: String,
 }
 
-/// A walk over all expressions that changes the one whose turn it is.
+/// A traversal of all expressions that changes a selected one.
 struct Walk<'a> {
-    /// How many places are still to be passed; the change is made at 0.
+    /// Number of places before the change; the change happens at 0.
     left: usize,
     choice: u64,
     /// Whether numbers are f32.
     single: bool,
     names: &'a [Expr],
     done: Option<(Kind, String)>,
-    /// Whether this function is one that changes are made in.
+    /// Whether changes happen in this function.
     counting: bool,
     places: usize,
 }
@@ -55,7 +55,7 @@ fn parenthesised(expression: &Expr) -> Expr {
 }
 
 impl Walk<'_> {
-    /// Whether the change is to be made at this place.
+    /// Whether the change happens at this place.
     fn turn(&mut self) -> bool {
         if self.counting {
             self.places += 1;
@@ -93,7 +93,7 @@ impl Walk<'_> {
             Expr::Binary(binary) => {
                 self.expression(&mut binary.left);
                 self.expression(&mut binary.right);
-                // One turn each for the sign, the order and a term or factor.
+                // Separate places for the sign, the order, and a term or factor.
                 if self.turn() {
                     let mut other = binary.clone();
                     other.op = match binary.op {
@@ -128,7 +128,7 @@ impl Walk<'_> {
                     let digit = u64::from(digits.as_bytes()[at] - b'0');
                     let other = (digit + 1 + (self.choice >> 8) % 9) % 10;
                     let changed = format!("{}{other}{}", &digits[..at], &digits[at + 1..]);
-                    // As the shortest decimal of its float: no other is a literal of a module.
+                    // Written as the shortest decimal of its float, the only form of literals in a module.
                     let changed = match self.single {
                         true => format!("{:?}", changed.parse::<f32>().expect("a decimal number")),
                         false => format!("{:?}", changed.parse::<f64>().expect("a decimal number")),
@@ -151,7 +151,7 @@ impl Walk<'_> {
     }
 }
 
-/// Operands of a function before each of its lines: names and entries of arguments that occur in it.
+/// Operands available before each line of a function: names and entries of arguments that occur in it.
 fn operands(block: &syn::Block, up_to: usize) -> Vec<Expr> {
     let mut names: Vec<Expr> = Vec::new();
     for statement in &block.stmts[..up_to] {
@@ -170,14 +170,14 @@ fn operands(block: &syn::Block, up_to: usize) -> Vec<Expr> {
     names
 }
 
-/// Entries `q[3]` that occur in a function.
+/// Entries such as `q[3]` that occur in a function.
 fn entries(function: &syn::ItemFn) -> Vec<Expr> {
     let tokens = text(&function.block);
     let mut found: Vec<Expr> = Vec::new();
     for argument in ["pi", "q", "dq", "ddq", "dqr", "ddqr", "tau"] {
         for index in 0..100 {
             let entry = format!("{argument} [{index}]");
-            // The word must not be the end of a longer one.
+            // The word must not be the end of a longer word.
             let whole = tokens.match_indices(&entry).any(|(at, _)| !tokens[..at].ends_with(|c: char| c.is_alphanumeric()));
             if whole {
                 found.push(syn::parse_str(&entry).expect("an entry"));
@@ -187,7 +187,7 @@ fn entries(function: &syn::ItemFn) -> Vec<Expr> {
     found
 }
 
-/// Whether it computes what the module is for: public, or the writer of what a public one returns.
+/// Whether a function belongs to the module's purpose: public, or the writer of a public function's result.
 fn is_of_the_module(function: &syn::ItemFn) -> bool {
     matches!(function.vis, syn::Visibility::Public(_)) || function.sig.ident.to_string().ends_with("_into")
 }
@@ -218,20 +218,20 @@ impl Mutable {
                     let names = [names.as_slice(), entries].concat();
                     let mut inner = Walk { names: &names, done: walk.done.take(), ..*walk };
                     match &mut function.block.stmts[line] {
-                        // `let _ = dq;` says nothing.
+                        // `let _ = dq;` has no effect.
                         Stmt::Local(local) if !matches!(local.pat, syn::Pat::Wild(_)) => {
                             if let Some(init) = &mut local.init {
                                 inner.expression(&mut init.expr);
                             }
                         }
-                        // An entry that is written into memory of the caller.
+                        // An entry written into memory of the caller.
                         Stmt::Expr(Expr::Assign(assigned), _) => inner.expression(&mut assigned.right),
                         Stmt::Expr(e, _) => inner.expression(e),
                         _ => {}
                     }
                     (walk.left, walk.places, walk.done) = (inner.left, inner.places, inner.done.take());
                     if walk.done.is_some() {
-                        // What writes into memory of the caller is read as the function that returns the same.
+                        // A function that writes into memory of the caller is read as the function that returns the same result.
                         let name = function.sig.ident.to_string();
                         return Some(name.strip_suffix("_into").unwrap_or(&name).to_owned());
                     }
@@ -246,7 +246,7 @@ impl Mutable {
         }
     }
 
-    /// Numbers of the items that have places, with how many.
+    /// Indices of the items with places, with the number of places.
     pub(crate) fn places(&self) -> Vec<(usize, usize)> {
         (0..self.file.items.len())
             .map(|item| {
@@ -259,7 +259,7 @@ impl Mutable {
             .collect()
     }
 
-    /// The text changed at a place of an item, if something can be changed there.
+    /// The text changed at a place of an item, if a change is possible there.
     pub(crate) fn change(&self, item: usize, place: usize, choice: u64) -> Option<(String, Change)> {
         let mut file = self.file.clone();
         let mut walk = Walk { left: place, choice, single: self.single, names: &[], done: None, counting: false, places: 0 };

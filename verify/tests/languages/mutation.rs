@@ -1,4 +1,4 @@
-//! Small changes of a module's text in any language, and what the checker says of them.
+//! Small changes of a module's text in any language, and the checker's reaction.
 
 use armgen_codegen::emit::Language;
 use armgen_codegen::kinds::Scalar;
@@ -14,10 +14,10 @@ use armgen_verify::{prepare, verify_with};
 
 use crate::common;
 
-/// The entries of a program as trees of operations: the same operations on the same operands in the same order, however lines are named.
+/// Whether the entries of two programs are the same trees of operations, with the same operands in the same order, regardless of names.
 pub(crate) fn same_operations(a: &Program, b: &Program) -> bool {
     fn numbered(program: &Program) -> Vec<usize> {
-        // Equal steps have equal numbers; leaves are told apart by what they are.
+        // Equal steps have equal numbers; leaves are identified by their content.
         let mut known: Vec<String> = Vec::new();
         let mut index = std::collections::HashMap::new();
         let mut numbers: Vec<usize> = Vec::new();
@@ -47,7 +47,7 @@ pub(crate) fn same_operations(a: &Program, b: &Program) -> bool {
         }
         numbers
     }
-    // Numbers are those of one list for both.
+    // Both programs share a list of numbers.
     let mut both = a.clone();
     let offset = both.steps.len();
     let (literals, turns) = (both.literals.len(), both.turns.len());
@@ -81,7 +81,7 @@ pub(crate) fn same_operations(a: &Program, b: &Program) -> bool {
         && a.outputs.iter().zip(&b.outputs).all(|(x, y)| x.place == y.place && numbers[x.step] == numbers[y.step + offset])
 }
 
-/// Changes a term or one character of code: a digit, a sign, a letter of a name, a bracket. None where the line is a comment or nothing changes.
+/// Changes a term or a character of code: a digit, a sign, a letter of a name, a bracket. `None` for a comment line, or if nothing changes.
 fn changed(text: &str, code: &[(usize, usize)], stream: &mut Stream) -> Option<(String, String)> {
     let (start, end) = code[stream.below(code.len() as u64) as usize];
     let line = &text[start..end];
@@ -107,7 +107,7 @@ fn changed(text: &str, code: &[(usize, usize)], stream: &mut Stream) -> Option<(
     Some((changed, format!("`{}` for `{}`", line.trim(), text[start..end].trim())))
 }
 
-/// Leaves a term out, or takes the sine for the cosine; in half of the lines that have one.
+/// Omits a term, or exchanges sine and cosine, in half of the lines that allow it.
 fn larger_change(line: &str, stream: &mut Stream) -> Option<String> {
     let choice = stream.below(4);
     if choice == 0 {
@@ -129,7 +129,7 @@ fn larger_change(line: &str, stream: &mut Stream) -> Option<String> {
     Some(format!("{}{other}{}", &line[..at], &line[at + 1..]))
 }
 
-/// Makes so many changes of code, each of which must be found: the text is refused, or another function than that of the equations is read.
+/// Makes this number of code changes; the checker must refuse each text, or read a function other than that of the equations.
 pub(crate) fn check(name: &str, language: Language, fuse: bool, wanted: usize) {
     let source = common::source(name);
     let generated = common::generate_with(&source, &Options { trig: Trig::Fast, fuse, ..Options::default() });
@@ -140,7 +140,7 @@ pub(crate) fn check(name: &str, language: Language, fuse: bool, wanted: usize) {
     let whole = ModuleText { language, text: &text };
     let prepared = prepare(manipulator, whole, claims.clone(), effort).expect("a module that can be read");
     let original = Module::read(whole).expect("it was just read");
-    // Where each line of code begins and ends.
+    // Beginning and end of each line of code.
     let code = code_lines(&text, language);
     let mut stream = Stream::new(4711);
     let (mut refused, mut different, mut idle) = (0, 0, 0);
@@ -181,7 +181,7 @@ pub(crate) fn check(name: &str, language: Language, fuse: bool, wanted: usize) {
     println!("{name} {language:?}: {refused} changes are refused, {different} differ from the equations, {idle} are none");
 }
 
-/// The places of the lines that are code, those of sines included.
+/// The positions of the lines of code, including those of sines.
 fn code_lines(text: &str, language: Language) -> Vec<(usize, usize)> {
     let mut code = Vec::new();
     let mut at = 0;

@@ -1,4 +1,4 @@
-//! What stands on the page of languages, carried out; the package, the tests, the declarations that are written beside a module.
+//! Runs the examples of the page about languages, and tests the package, the test files and the declarations next to a module.
 
 use std::path::{Path, PathBuf};
 use std::process::Command;
@@ -13,7 +13,7 @@ use armgen_verify::reader::ModuleText;
 use super::tools::{numpy, python_with, succeed, there, write, write_package};
 use crate::common;
 
-/// The block of a kind of the page of languages, the first behind a heading.
+/// The first block of this kind after a heading of the page about languages.
 fn block(heading: &str, kind: &str) -> String {
     let page = include_str!("../../../docs/languages.md");
     let section = page.split(&format!("\n## {heading}\n")).nth(1).expect("a section");
@@ -36,7 +36,7 @@ fn prints(command: &mut Command, expected: &str) {
     assert!(output.status.success() && out == expected, "{command:?}: {}\n{out}{err}", output.status);
 }
 
-/// The callers of the page print what stands below them.
+/// The callers on the page print the output shown below them.
 pub(crate) fn check_page() {
     let (folder, generated) = folder_of("languages_page");
     if there("gcc", "gcc") {
@@ -75,7 +75,7 @@ pub(crate) fn check_page() {
     }
 }
 
-/// A compiler with options, given by CC or as an argument, gets them; one whose path has a blank is taken as it stands.
+/// CC or an argument can name a compiler with options; a path with a blank stays a single path.
 fn check_compiler_with_options(folder: &Path, python: &str) {
     let compiler = folder.join("my cc");
     write(compiler.clone(), "#!/bin/sh\necho \"$@\" >> given\nexec cc \"$@\"\n");
@@ -102,14 +102,14 @@ given(None, ('-g0 --version', '-g0 -O0 '))
     succeed(Command::new(python).current_dir(folder).arg("compilers.py"));
 }
 
-/// What the callers of a package are told: of a row where a column is wanted, of other numbers, by `help`.
+/// Messages for callers of a package: about a row in place of a column, about other types of numbers, and from `help`.
 pub(crate) fn check_package() {
     let (folder, generated) = folder_of("languages_package");
     if !there("octave-cli", "octave") {
         return;
     }
     write_package(&folder.join("+scara"), &generated);
-    // One file alone, with another name, as in a block of Simulink.
+    // A single file with another name, as in a block of Simulink.
     let gravity = generated.package().into_iter().find(|file| file.name == "inverseDynamics.m").expect("a function");
     write(folder.join("block.m"), gravity.text.replace("= inverseDynamics(", "= block("));
     write(
@@ -180,7 +180,7 @@ end
     succeed(Command::new("octave-cli").current_dir(&folder).args(["--no-init-file", "--eval", "main"]));
 }
 
-/// Tensors of torch: the bits of NumPy in blocks and out of them, and whole where they are recorded, mapped over or compiled.
+/// Tensors of torch: the bits of NumPy with and without blocks; also under recording, mapping and compilation.
 pub(crate) fn check_torch() {
     let Some(python) = python_with("torch") else { return };
     let (folder, generated) = folder_of("languages_torch");
@@ -228,8 +228,8 @@ assert near(vmap(scara.inertia_matrix)(few), scara.inertia_matrix(few))
     succeed(Command::new(python).current_dir(&folder).arg("main.py"));
 }
 
-/// Arrays of a library that has the array API and no more, where an index is complete or has an ellipsis, with the bits of NumPy. Such a library
-/// is made up here; the one that is made for it runs where it is installed.
+/// Arrays of a library with only the array API, whose indices must be complete or have an ellipsis; the bits equal NumPy's. The test makes up such a
+/// library; the library for this purpose runs if installed.
 pub(crate) fn check_array_api() {
     let Some(python) = numpy() else { return };
     let (folder, generated) = folder_of("languages_array_api");
@@ -299,7 +299,7 @@ for module in (scara, friction):
     succeed(Command::new(python).current_dir(&folder).arg("main.py"));
 }
 
-/// What is said of entries of another type leads to what is taken: of torch and jax, with and without 64 bits.
+/// The message about entries of another type leads to an accepted type, for torch and jax, with and without 64 bits.
 pub(crate) fn check_other_types() {
     let (folder, generated) = folder_of("languages_types");
     write(folder.join("scara.py"), generated.in_language(Language::Python));
@@ -341,7 +341,7 @@ assert scara.gravity(jax.numpy.zeros(4, dtype=jax.numpy.float64)).dtype == jax.n
     }
 }
 
-/// The test file of a language passes beside the module, and fails beside one whose gravity is another.
+/// The test file of a language passes with the module, and fails with a module of another gravity.
 pub(crate) fn check_tests(name: &str, scalar: Scalar, language: Language) {
     let python = if language == Language::Python { numpy() } else { Some("") };
     let there = match language {
@@ -409,7 +409,7 @@ pub(crate) fn check_tests(name: &str, scalar: Scalar, language: Language) {
     run(true);
 }
 
-/// The declarations of JavaScript by the compiler of TypeScript: a caller that is right, and ones that are not.
+/// The JavaScript declarations pass the TypeScript compiler with a correct caller, and not with incorrect callers.
 pub(crate) fn check_declarations() {
     let (folder, generated) = folder_of("languages_tsc");
     if !there("tsc", "node-typescript") {
@@ -453,7 +453,7 @@ pub(crate) fn check_declarations() {
     }
 }
 
-/// Flags that let a compiler reorder sums, of which GCC says so and Clang does not.
+/// Flags that let a compiler reorder sums; GCC makes them detectable, Clang does not.
 const PARTS_OF_FAST_MATH: [&[&str]; 4] = [
     &["-ffast-math", "-fno-finite-math-only"],
     &["-funsafe-math-optimizations"],
@@ -461,12 +461,12 @@ const PARTS_OF_FAST_MATH: [&[&str]; 4] = [
     &["-freciprocal-math"],
 ];
 
-/// Flags under which what is no number is taken for one, or zeros have other signs, with the compilers that say that they were given them.
+/// Flags that assume away NaN and infinity, or ignore signs of zeros, with the compilers that make them detectable.
 const OTHER_NUMBERS: [(&str, &[&str]); 2] =
     [("-ffinite-math-only", &["gcc", "clang", "arm-none-eabi-gcc"]), ("-fno-signed-zeros", &["gcc", "arm-none-eabi-gcc"])];
 
-/// What reorders sums or takes other numbers is refused by the header itself, or changes nothing where the compiler does not say that it was
-/// given; other flags are taken, and without `math.h` no header is needed.
+/// The header itself refuses flags that reorder sums or change number semantics, or they change nothing if the compiler hides them. Other flags are
+/// accepted, and without `math.h` no header is needed.
 pub(crate) fn check_fast_math() {
     let (folder, generated) = folder_of("languages_fast_math");
     write(folder.join("scara.h"), generated.in_language(Language::C));
@@ -486,7 +486,7 @@ pub(crate) fn check_fast_math() {
     ];
     write(folder.join("caller.c"), caller.join("\n"));
     for compiler in ["gcc", "clang", "arm-none-eabi-gcc"] {
-        // Its C library is not everywhere.
+        // Its C library is not installed everywhere.
         let bare = compiler.starts_with("arm");
         if !there(compiler, if bare { "gcc-arm-none-eabi" } else { compiler }) {
             continue;

@@ -1,4 +1,4 @@
-//! The programs that run a module in its language: every function over all states of a file, its results into a file each.
+//! Programs that run a module in its language: every function over all states of a file, with a result file each.
 
 use std::fmt::Write as _;
 use std::ops::Range;
@@ -14,10 +14,10 @@ use super::run::{Effort, Robot};
 use super::tools::{numpy, succeed, there, write, write_package};
 
 const DRIVER: &str = include_str!("driver.rs");
-/// Of the crate the module calls one function, for angles that the states do not have.
+/// A substitute for the module's only external function, which serves angles outside the tested states.
 const LIBM: &str = "pub fn sincos(x: f64) -> (f64, f64) { x.sin_cos() }\npub fn sincosf(x: f32) -> (f32, f32) { x.sin_cos() }\n";
 
-/// The module in Rust, compiled by itself.
+/// The Rust module, compiled separately.
 pub(crate) fn rust(folder: &Path, robot: &Robot, generated: &Generated) {
     let mut main = format!("#![allow(unused)]\ninclude!(\"robot.rs\");\n{DRIVER}\n");
     if generated.module.contains("struct EquationsOfMotion") {
@@ -50,7 +50,7 @@ pub(crate) fn rust(folder: &Path, robot: &Robot, generated: &Generated) {
     succeed(Command::new(folder.join("rust_main")).current_dir(folder).args(["states", "rust"]));
 }
 
-/// The header, by all compilers.
+/// The header, with all compilers.
 pub(crate) fn c(folder: &Path, robot: &Robot, generated: &Generated, effort: Effort) -> Vec<String> {
     let name: String = robot.name.clone();
     let mut main = String::from("#include <stdio.h>\n#include <stdlib.h>\n#include \"robot.h\"\n\n");
@@ -116,7 +116,7 @@ pub(crate) fn c(folder: &Path, robot: &Robot, generated: &Generated, effort: Eff
     runs
 }
 
-/// The functions of the header for many states at a time.
+/// The functions of the header for arrays of states.
 pub(crate) fn batch(folder: &Path, robot: &Robot, generated: &Generated, effort: Effort) -> Vec<String> {
     let name: String = robot.name.clone();
     let length = robot.numbers_of_state();
@@ -178,7 +178,7 @@ pub(crate) fn batch(folder: &Path, robot: &Robot, generated: &Generated, effort:
     runs
 }
 
-/// The module in JavaScript, by Node.
+/// The JavaScript module, in Node.
 pub(crate) fn javascript(folder: &Path, robot: &Robot, generated: &Generated) -> Vec<String> {
     if !there("node", "nodejs") {
         return Vec::new();
@@ -205,7 +205,7 @@ pub(crate) fn javascript(folder: &Path, robot: &Robot, generated: &Generated) ->
     vec!["node".into()]
 }
 
-/// The module in Python, by NumPy, all states at once.
+/// The Python module, in NumPy, for all states at once.
 pub(crate) fn python(folder: &Path, robot: &Robot, generated: &Generated) -> Vec<String> {
     let Some(python) = numpy() else { return Vec::new() };
     let length = robot.numbers_of_state();
@@ -242,7 +242,7 @@ pub(crate) fn python(folder: &Path, robot: &Robot, generated: &Generated) -> Vec
     runs
 }
 
-/// The package in MATLAB, by Octave, all states at once.
+/// The MATLAB package, in Octave, for all states at once.
 pub(crate) fn octave(folder: &Path, robot: &Robot, generated: &Generated) -> Vec<String> {
     if !there("octave-cli", "octave") {
         return Vec::new();
@@ -258,7 +258,7 @@ pub(crate) fn octave(folder: &Path, robot: &Robot, generated: &Generated) -> Vec
         let results: Vec<String> = (1..=function.results.len()).map(|k| format!("r{k}")).collect();
         let call = format!("robot.{}({})", camel(&function.name), arguments.join(", "));
         let _ = writeln!(main, "    [{}] = {call};", results.join(", "));
-        // By rows, as elsewhere.
+        // Row by row, as in other languages.
         let by_rows = |(result, (_, array, entries)): (&String, &(String, Array, usize))| match array.len() {
             0 | 1 => format!("reshape({result}, {entries}, [])"),
             2 => format!("reshape(permute({result}, [2, 1, 3]), {entries}, [])"),

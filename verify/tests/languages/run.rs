@@ -1,4 +1,4 @@
-//! Modules run beside the one in Rust, over the same states from a file; results are compared in bits.
+//! Runs modules next to the Rust module over the same states, and compares the results bit by bit.
 
 use std::ops::Range;
 use std::path::Path;
@@ -17,21 +17,21 @@ use super::programs::{batch, c, javascript, octave, python, rust};
 use super::tools::write;
 use crate::common;
 
-/// How many compilers and flags are tried.
+/// The number of compilers and flags to try.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Effort {
     Short,
     Full,
 }
 
-/// A function, its arguments with their places in a state, and its results with their number of entries.
+/// A function, its arguments with their positions in a state, and its results with their sizes.
 pub(crate) struct Called {
     pub(crate) name: String,
     pub(crate) arguments: Vec<(Argument, Range<usize>)>,
     pub(crate) results: Vec<(String, Array, usize)>,
 }
 
-/// What a driver needs to know of a module.
+/// The data of a module that a driver needs.
 pub(crate) struct Robot {
     pub(crate) name: String,
     pub(crate) scalar: Scalar,
@@ -78,7 +78,7 @@ impl Robot {
         Robot { name: name.clone(), scalar, dof, parameters, sizes, functions: module.programs().map(called).collect() }
     }
 
-    /// States: positions of all sizes, exact multiples of pi/2, zeros of both signs among them.
+    /// States with positions of all sizes, including exact multiples of pi/2 and zeros of both signs.
     fn states(&self, count: usize) -> Vec<u8> {
         let mut stream = Stream::new(20_240);
         let range = if self.scalar == Scalar::F64 { 6500.0 } else { 30.0 };
@@ -106,7 +106,7 @@ impl Robot {
         bytes
     }
 
-    /// How many numbers a state has: the parameters, and six vectors of the joints.
+    /// Number of values in a state: the parameters, and six vectors of the joints.
     pub(crate) fn numbers_of_state(&self) -> usize {
         self.parameters + 6 * self.dof
     }
@@ -130,14 +130,14 @@ impl Robot {
     }
 }
 
-/// Runs the module in all languages over so many states, and compares.
+/// Runs the module in all languages over this number of states, and compares.
 #[track_caller]
 pub(crate) fn check(name: &str, scalar: Scalar, states: usize, effort: Effort) {
     #[allow(clippy::needless_update)]
     check_with(name, &common::source(name), &Options { scalar, trig: Trig::Fast, ..Options::default() }, states, effort);
 }
 
-/// The same of any description and of some functions.
+/// The same for any description and some functions.
 #[track_caller]
 pub(crate) fn check_with(name: &str, source: &Source, options: &Options, states: usize, effort: Effort) {
     let scalar = options.scalar;
@@ -164,7 +164,7 @@ pub(crate) fn check_with(name: &str, source: &Source, options: &Options, states:
             Language::Matlab => octave(&folder, &robot, &generated),
         };
         for run in runs {
-            // GCC makes one instruction of the negative of a fused operation, and the other zero of its zero.
+            // GCC compiles a negated fused operation to a single instruction, which changes the sign of a zero.
             let zeros = options.fuse && run.split(' ').any(|word| ["gcc", "g++"].contains(&word));
             let results: usize = robot.functions.iter().map(|function| compare(&folder, &robot, function, &run, zeros)).sum();
             println!("{name} {scalar:?}: {run}: {results} numbers of {} functions have the bits of Rust", robot.functions.len());
@@ -174,7 +174,7 @@ pub(crate) fn check_with(name: &str, source: &Source, options: &Options, states:
     let _ = std::fs::remove_dir_all(&folder);
 }
 
-/// Compares the results of a function; how many there are. `zeros`: whether one zero is as good as the other.
+/// Compares the results of a function; returns their number. `zeros`: both zeros are equal.
 #[track_caller]
 fn compare(folder: &Path, robot: &Robot, function: &Called, run: &str, zeros: bool) -> usize {
     let read = |run: &str| std::fs::read(folder.join(run).join(&function.name)).expect("the results");

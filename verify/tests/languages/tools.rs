@@ -1,4 +1,4 @@
-//! Compilers and interpreters: whether they are there (`tests/src/installed.rs`), and running them.
+//! Compilers and interpreters: their availability (`tests/src/installed.rs`), and their execution.
 
 use std::path::{Path, PathBuf};
 use std::process::Command;
@@ -8,7 +8,7 @@ use armgen_codegen::Generated;
 pub(crate) use super::installed::there;
 use super::installed::{left_out, runs};
 
-/// Runs a command; what went wrong if it failed or warned.
+/// Runs a command; panics with its output if it fails or warns.
 #[track_caller]
 pub(crate) fn succeed(command: &mut Command) {
     let output = command.output().unwrap_or_else(|error| panic!("{command:?}: {error}"));

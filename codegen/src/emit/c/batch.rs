@@ -13,7 +13,7 @@ use crate::program::Function;
 
 const BLOCKS: &str = include_str!("blocks.h");
 
-/// As in the function for one state, but that arguments are those of a lane.
+/// As in the function for one state, except that the arguments belong to a lane.
 struct Lanes<'a>(&'a C<'a>);
 
 impl Syntax for Lanes<'_> {
@@ -38,7 +38,7 @@ impl Syntax for Lanes<'_> {
     }
 }
 
-/// All functions, so many states at a time.
+/// All functions, for blocks of `lanes` states.
 pub(super) fn print(c: &C<'_>, lanes: usize) -> String {
     let mut text = of_robot(BLOCKS, &c.name, &c.upper).replace("@", &lanes.to_string());
     for function in &c.module.functions {
@@ -84,7 +84,7 @@ impl C<'_> {
             );
         }
         if !waves.is_empty() {
-            // Filled up to whole vectors: with zeros, where the lanes of an angle are none.
+            // Filled up to whole vectors; zeros where the lanes of an angle are no whole vectors.
             let step = VECTOR / [4, 2, 1].into_iter().find(|n| module.batch.is_some_and(|lanes| lanes % n == 0)).unwrap_or(1);
             let shape = format!("[{}][{upper}_LANES]", waves.len().next_multiple_of(step));
             let zeros = if step > 1 { " = {{0}}" } else { "" };

@@ -20,8 +20,7 @@ pub(super) fn macro_of(prefix: &str, length: Length) -> String {
     }
 }
 
-/// What the macros of a robot begin with: its name with upper and lower case exchanged, so that names that differ
-/// in case alone have macros that differ.
+/// Prefix of the macros of a robot: its name with upper and lower case exchanged. So names that differ only in case have different macros.
 pub(super) fn macros_of(name: &str) -> String {
     let turned = |c: char| if c.is_ascii_lowercase() { c.to_ascii_uppercase() } else { c.to_ascii_lowercase() };
     name.chars().map(turned).collect()
@@ -36,7 +35,7 @@ pub(super) fn link<'a>(name: &'a str, upper: &'a str) -> impl Fn(Link<'_>) -> St
     }
 }
 
-/// The beginning of both headers: where it came from, what it lacks, and the guard.
+/// The beginning of both headers: origin, missing functions, and the guard.
 pub(super) fn opening(origin: &Origin, notes: &[String], absent: &[Absent], upper: &str) -> String {
     let absent = absent.iter().map(|absent| format!("There is no `{}`: {}.", absent.function, absent.reason));
     let head = crate::emit::head::lines(origin, notes).into_iter().chain(absent).collect();
@@ -62,12 +61,12 @@ pub(super) fn header(module: &Module, origin: &Origin) -> String {
     text
 }
 
-/// What the header that holds the functions has besides.
+/// For the header of the functions in Rust.
 const OF_RUST: &str = "/*\n * The functions are those of the module in Rust, with its bits, whatever the C compiler. No header is included, as with \
      ROBOT_NO_MATH_H\n * where the header holds the functions itself: INFINITY, where a limit below is infinite, is in math.h.\n */\n\
      #define ROBOT_SAME_BITS 1\n\n";
 
-/// What is said of all functions.
+/// Documentation of all functions.
 pub(super) const POINTERS: &str =
     "\n/* Arrays are by rows. A result may lie where arguments do, but not where another result does. */\n";
 
@@ -142,20 +141,20 @@ pub(super) fn macros(module: &Module) -> String {
     text
 }
 
-/// What the names of parameters mean.
+/// Meaning of the names of parameters.
 pub fn parameters_comment(described: &DescribedParameters) -> String {
     let title = Block::text("The parameters, in the order of the columns of the regressor:");
     comment(&[title, Block::Table(described.parameters.clone())], &|_| String::new())
 }
 
-/// What the names of base parameters mean; `name`: what the functions of the robot begin with.
+/// Meaning of the names of base parameters; `name`: prefix of the functions of the robot.
 pub fn base_parameters_comment(described: &DescribedParameters, name: &str) -> String {
     let title = Block::text(format!("The base parameters, in the order of the columns of {name}_base_regressor:"));
     let blocks: Vec<Block> = [title].into_iter().chain(described.base_meanings()).collect();
     comment(&blocks, &|_| String::new())
 }
 
-/// The comment of a function, with what is said behind all else; `name`: what the functions of the robot begin with.
+/// The comment of a function; `note` ends it; `name`: prefix of the functions of the robot.
 pub fn function_comment(described: &Described<'_>, note: Option<&str>, name: &str) -> String {
     comment(&described.blocks(false, note), &link(name, &macros_of(name)))
 }

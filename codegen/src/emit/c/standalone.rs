@@ -1,7 +1,7 @@
 //! The header that holds the functions: C99 and C++11, static functions, no allocation, no state.
 //!
-//! Compilers take several liberties with floats, of which each changes bits; `unfused.h` forbids them or refuses to be compiled. Every result
-//! is written when nothing is left to be read, so that results may lie where arguments do.
+//! Several optimisations of floats change bits; `unfused.h` forbids each or stops the compiler. Every function reads all
+//! arguments before it writes a result, so results may alias arguments.
 
 use std::fmt::Write;
 
@@ -28,7 +28,7 @@ const STD: &str = include_str!("sines/std.h");
 const FAST: &str = include_str!("sines/fast.h");
 const FUSED: &str = include_str!("fused.h");
 
-/// The lanes of a vector of angles: what a processor with vectors always has, up to `VECTOR`.
+/// Lanes of a vector of angles: as many as every processor with vectors has, up to `VECTOR`.
 const OF_FOUR: &str = "#define ROBOT_VECTOR_LANES 4\n#define ROBOT_VECTOR_AT(from) {(from)[0], (from)[1], (from)[2], (from)[3]}";
 const OF_TWO: &str = "#define ROBOT_VECTOR_LANES 2\n#define ROBOT_VECTOR_AT(from) {(from)[0], (from)[1]}";
 
@@ -70,7 +70,7 @@ pub(super) fn print(module: &Module, origin: &Origin, notes: &Notes) -> String {
     text + EPILOGUE
 }
 
-/// The header with functions for so many states at a time, and behind it those functions for a library that is loaded by name.
+/// The header with functions for `lanes` states each, followed by these functions for a library that is loaded by name.
 pub(super) fn library(module: &Module, origin: &Origin, lanes: usize) -> String {
     let module = Module { batch: Some(lanes), ..module.clone() };
     let name = prefix(&module);

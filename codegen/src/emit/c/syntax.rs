@@ -1,11 +1,11 @@
-//! How C writes numbers and signs: what the functions for one state and those for many share.
+//! How C writes numbers and signs, in functions for one state and for many states.
 
 use super::header::constant;
 use crate::emit::plain::Syntax;
 use crate::exact::Number;
 use crate::program::Module;
 
-/// What a vector of angles has lanes at most.
+/// Most lanes of a vector of angles.
 pub(super) const VECTOR: usize = 4;
 
 /// A module under the names that C gives it.

@@ -1,9 +1,9 @@
 //! The functions once more, for many states at a time.
 //!
-//! `lanes` takes a block: LANES states side by side, `q[joint][lane]`. Each function is one loop over the lanes, whose body is that of the
-//! function for one state. A body so long is never unrolled, reads and writes only neighbouring numbers and branches nowhere, so the compiler does
-//! every step for several lanes in one vector instruction. Values kept as vectors of a type of their own would leave the compiler to find the
-//! vectors again, step by step, in thousands of scalars.
+//! `lanes` takes a block: LANES states side by side, `q[joint][lane]`. Each function is one loop over the lanes, whose body is
+//! that of the function for one state. The compiler never unrolls such a long body. The body has no branches and accesses only
+//! neighbouring numbers, so the compiler does every step for several lanes in one vector instruction. Values kept as vectors of a
+//! type of their own would leave the compiler to find the vectors again, step by step, in thousands of scalars.
 //!
 //! `batch` takes slices of states as the functions for one state know them, and turns them into blocks and back.
 
@@ -18,7 +18,7 @@ use crate::program::{Function, Module};
 
 const BLOCKS: &str = include_str!("batch/blocks.rs");
 
-/// The modules `lanes` and `batch`, of so many lanes.
+/// The modules `lanes` and `batch`, with this many lanes.
 pub(super) fn modules(module: &Module, lanes: usize) -> TokenStream {
     let width = usize_literal(lanes);
     let of_blocks = module.functions.iter().map(|f| of_block(module, f));
@@ -96,7 +96,7 @@ fn block_of(quantity: &Quantity) -> TokenStream {
     signature::of_parts(quantity, |part| signature::part_type(part, &quote!(Lanes)), |name| quote!(#name))
 }
 
-/// Where the entries of a result stand in a block, in the order of the entries.
+/// Places of the entries of a result in a block, in the order of the entries.
 fn places(quantity: &Quantity, sizes: &Sizes) -> Vec<TokenStream> {
     fn indices(lengths: &[Length], sizes: &Sizes) -> Vec<TokenStream> {
         let Some((outer, inner)) = lengths.split_first() else { return vec![quote!()] };

@@ -1,7 +1,7 @@
 //! The body of an emitted function: the lines of its listing, and a long one in parts.
 //!
-//! A formatter of Rust holds many times the text that it writes, and takes a hundred times as long as it takes to write a line. Nearly every line of
-//! a body fits into one line of text, whose form is known: these are written as they are. What a line is too short for is left to the formatter.
+//! A formatter of Rust needs many times the memory of its text, and a hundred times the time of writing a line. Nearly every line of a body
+//! fits into one line of text, whose form is known, so these lines are written directly. The formatter only handles longer lines.
 
 use proc_macro2::{Ident, TokenStream};
 use quote::{format_ident, quote};
@@ -14,13 +14,13 @@ use crate::kinds::Scalar;
 use crate::program::listing::{decimal, BodyPart, Expression, Line, Listing, Name};
 use crate::program::{Function, Module};
 
-/// What stands before a line of a body.
+/// Indentation of a line of a body.
 const INDENT: &str = "    ";
 
 /// Characters of a line of formatted text.
 const WIDTH: usize = 89;
 
-/// How Rust writes what a line is made of.
+/// How Rust writes the elements of a line.
 struct Rust(Scalar);
 
 impl Syntax for Rust {
@@ -41,7 +41,7 @@ impl Syntax for Rust {
     }
 }
 
-/// What stands in a function.
+/// Body of a function.
 pub(super) struct Body {
     /// Private functions that it calls.
     pub(super) parts: Vec<String>,
@@ -57,7 +57,7 @@ pub(super) struct Body {
 pub(super) struct Group {
     /// Which these are.
     pub(super) entries: Vec<usize>,
-    /// How many lines stand before them.
+    /// Number of lines before them.
     pub(super) before: usize,
 }
 
@@ -85,7 +85,7 @@ pub(super) fn body(module: &Module, function: &Function) -> Body {
     Body { parts, lines, entries, groups }
 }
 
-/// Numbers, then what is left of each column, behind the lines that it uses.
+/// Numbers first; then the other entries of each column, after the lines that they use.
 fn groups(listing: &Listing, columns: Vec<Vec<usize>>) -> Vec<Group> {
     let is_number = |&entry: &usize| matches!(listing.entries[entry], Expression::Constant(_));
     let (numbers, columns): (Vec<Vec<usize>>, Vec<Vec<usize>>) =
@@ -116,7 +116,7 @@ fn of_part(module: &Module, function: &Function, part: &BodyPart, number: usize)
     (text, format!("let [{}] = {own}({passed}[{}]);", list(&part.given), list(&part.taken)))
 }
 
-/// The text of a function that has an empty body in `frame`, and in the text these lines between what stands before and behind them.
+/// The text of the function `frame`, which has an empty body, filled with these lines between `before` and `behind`.
 pub(super) fn framed(frame: TokenStream, before: &TokenStream, lines: &[String], behind: &TokenStream) -> String {
     let mut text = formatted(frame);
     text.truncate(text.trim_end().trim_end_matches('}').len());

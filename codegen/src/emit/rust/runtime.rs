@@ -9,8 +9,8 @@ use crate::catalogue::{self, Argument, Length, Quantity, ResultPart};
 use crate::emit::documentation as common;
 use crate::program::Module;
 
-/// Two robots over the functions of the module, in scope by `use super::*` or by standing beside it: `Nominal`, the robot of the description,
-/// and `WithParameters`, the same robot with parameters chosen at run time.
+/// Two robots that call the functions of the module, in scope by `use super::*` or in the same module. `Nominal` is the robot of
+/// the description, `WithParameters` the same robot with parameters chosen at run time.
 ///
 /// None of a module without kinematics, which all other traits build on; of one without dynamics there is the kinematics of `Nominal` alone.
 pub(super) fn implementation(module: &Module) -> Option<TokenStream> {
@@ -123,7 +123,7 @@ fn traits(module: &Module, robot: &TokenStream, with_parameters: bool) -> TokenS
             }
         }
     });
-    // With other parameters a function that does not take them would answer for another robot; a regressor has none in it.
+    // With other parameters, a function that does not take them would describe another robot. A regressor is independent of them.
     let answers =
         |quantity: &Quantity| !with_parameters || quantity.has_parameters || quantity.has_length(Length::BaseParameters);
     let single = single().filter(|(quantity, _)| answers(quantity));

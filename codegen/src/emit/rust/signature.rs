@@ -16,7 +16,7 @@ pub(super) fn name(name: Name) -> Ident {
     format_ident!("{}", name.text())
 }
 
-/// The types that hold the parts of results, each once; those of functions for many states are of a block.
+/// The types that hold the parts of results, each once; for functions of many states they hold a block.
 pub(super) fn structures(module: &Module, of_blocks: bool) -> Vec<TokenStream> {
     let mut quantities: Vec<&Quantity> = module.functions.iter().map(|function| function.quantity).collect();
     quantities.dedup();

@@ -1,10 +1,9 @@
 //! Sine and cosine in the emitted module: where the functions ask for them, and the private block that answers.
 //!
-//! `libm` and `std` answer angle by angle. `fast` answers for four or eight angles at once: the text in `sincos/fast_f64.rs` and
-//! `sincos/fast_f32.rs`, real Rust files that are taken in as they stand. Its angles are arguments one by one, which travel in registers:
-//! a processor that reads a vector from numbers that were just written one by one waits for all the writes, longer than the sines take.
-//! A single angle, and in f32 each of two, gains nothing from vectors and is asked for by itself; in f64 without its cosine or its sine where that is
-//! not needed.
+//! `libm` and `std` take a single angle. `fast` takes four or eight angles at once: `sincos/fast_f64.rs` and `sincos/fast_f32.rs`, real Rust
+//! files that are included verbatim. Its angles are separate arguments, which travel in registers. A processor that loads a vector just after
+//! its numbers were stored one by one waits for all the stores, longer than the sines take. A single angle, and in f32 each of two, gains
+//! nothing from vectors and is computed by itself; in f64 an unused sine or cosine is left out.
 
 use std::collections::BTreeSet;
 
@@ -166,7 +165,7 @@ pub(super) fn lines_of_lanes(module: &Module, function: &Function) -> (Vec<Token
     (before, inside)
 }
 
-/// The private function behind those lines.
+/// The private function that those lines call.
 pub(super) fn of_lanes(module: &Module) -> TokenStream {
     let body = match module.trig {
         Trig::Fast => quote! {
@@ -199,7 +198,7 @@ pub(super) fn of_lanes(module: &Module) -> TokenStream {
     }
 }
 
-/// The private functions behind the lines of all functions.
+/// The private functions that the lines of all functions call.
 pub(super) fn functions(module: &Module) -> TokenStream {
     let call = match (module.trig, module.scalar) {
         (Trig::Fast, scalar) => {

@@ -1,9 +1,8 @@
-//! Functions that write their result where the caller says: `NAME_into`, which the function `NAME` calls, and the face for C.
+//! Functions that write their result to a place of the caller: `NAME_into`, which the function `NAME` and the C interface call.
 //!
-//! Of a value that is returned a compiler gathers the entries elsewhere, and copies them together. Where it sees all entries at once it takes the
-//! same entries of several columns together in vectors, holds the steps of all of them for that, and saves most of these on the stack. So each
-//! column is written as soon as its steps are done, and a barrier stands between two columns: the compiler moves no store over it. It is no
-//! instruction.
+//! A compiler gathers the entries of a returned value elsewhere and then copies them. If it sees all entries at once, it combines entries of
+//! several columns in vectors. Then the steps of all columns are live, and most are spilled to the stack. So each column is written as soon
+//! as its steps are done. A barrier separates two columns: the compiler moves no store across it, and it costs no instruction.
 
 use proc_macro2::TokenStream;
 use quote::{format_ident, quote};
@@ -34,7 +33,7 @@ pub(in crate::emit) fn name_into(function: &Function) -> String {
     format!("{}_into", function.name())
 }
 
-/// The function without its documentation, and the one that writes its result; `first` stands before the lines.
+/// The function without its documentation, and its result writer; `first` comes before the lines.
 pub(super) fn function(function: &Function, first: &TokenStream, body: &Body, sizes: &Sizes) -> String {
     let quantity = function.quantity;
     let (name, written) = (format_ident!("{}", function.name()), format_ident!("{}", name_into(function)));
@@ -63,7 +62,7 @@ pub(super) fn function(function: &Function, first: &TokenStream, body: &Body, si
     returning + &body::framed(frame, first, &by_groups(quantity, body, sizes), &quote!())
 }
 
-/// What stands between two columns.
+/// Barrier between two columns.
 pub(super) fn barrier() -> TokenStream {
     quote! {
         /// Between two columns: where there are vectors a compiler would take entries of several columns together, and hold too many values for that.
@@ -85,7 +84,7 @@ fn listed(quantity: &Quantity) -> String {
     }
 }
 
-/// The lines of a body, and behind those that a group of entries needs the group itself.
+/// The lines of a body, with each group of entries right after the lines that it needs.
 fn by_groups(quantity: &'static Quantity, body: &Body, sizes: &Sizes) -> Vec<String> {
     let place = |(part, indices): (&ResultPart, Vec<usize>)| {
         part.name.to_string() + &indices.iter().map(|index| format!("[{index}]")).collect::<String>()

@@ -1,7 +1,7 @@
-//! What the programs share: they measure calls by the system timer and by painting the stack, and print over semihosting.
+//! Shared by the programs: measure calls by the system timer and by painting the stack, and print over semihosting.
 //!
-//! Under an emulator whose clock advances by the same time for each instruction, differences of the timer count instructions; the lines
-//! `calibration` let the reader of the output check that they do.
+//! An emulator's clock advances by the same time for each instruction, so differences of the timer count instructions. The lines
+//! `calibration` let the reader of the output check this.
 //!
 //! | line | fields |
 //! |---|---|
@@ -23,7 +23,7 @@ use cortex_m_stack::{current_stack_free, repaint_stack, stack_painted};
 const MOST_FUNCTIONS: usize = 64;
 const WRAP: u32 = 0x00ff_ffff;
 
-/// What ended the run early; the exit code tells the host.
+/// Reason of an early end of the run; the exit code reports it to the host.
 #[derive(Debug)]
 pub struct Stopped;
 
@@ -95,7 +95,7 @@ impl Costs {
         costs
     }
 
-    /// Prints a line for each, the name behind that of its module.
+    /// Prints a line for each function, with its name after the name of its module.
     ///
     /// # Errors
     /// Where the host does not take it.

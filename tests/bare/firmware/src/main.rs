@@ -1,4 +1,4 @@
-//! Runs the controlled SCARA on a Cortex-M4F and prints the torques of each step and what they cost, besides the lines of the library:
+//! Runs the controlled SCARA on a Cortex-M4F. In addition to the lines of the library, prints the torques of each step and their cost:
 //!
 //! | line | fields |
 //! |---|---|
@@ -14,7 +14,7 @@ use core::fmt::Write;
 use core::hint::black_box;
 use panic_halt as _;
 
-/// Every so many steps the stack of a control step is measured at the state of the arm.
+/// Number of steps between two measurements of the stack of a control step at the state of the arm.
 const BETWEEN_MEASUREMENTS: u32 = 100;
 
 #[cortex_m_rt::entry]

@@ -23,7 +23,7 @@ pub mod puma560_ik {
 /// Poses of each arm.
 pub const POSES: u32 = 16;
 
-/// Joint variables whose pose is asked for: between -2.5 and 2.5, no two joints alike.
+/// Joint variables of a requested pose: between -2.5 and 2.5, no two joints alike.
 fn joints<const N: usize>(pose: u32) -> [f32; N] {
     core::array::from_fn(|i| ((pose * 7 + i as u32 * 5 + 3) % 11) as f32 * 0.5 - 2.5)
 }

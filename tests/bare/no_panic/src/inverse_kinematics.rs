@@ -1,4 +1,4 @@
-//! Every block of inverse kinematics, with arguments that the optimiser knows nothing of, and what a module makes of their solutions.
+//! Every block of inverse kinematics, with arguments opaque to the optimiser, and the steps of a module with their solutions.
 
 use core::hint::black_box;
 
@@ -45,7 +45,7 @@ macro_rules! every_block {
                 })
             }
 
-            /// Of each construction of a whole arm: its solutions, polished, in the arm's order, as a module gives them.
+            /// For each construction of a whole arm: its solutions, polished, in the arm's order, as a module returns them.
             fn whole<const N: usize>(mut found: Branches<6, N>, links: &[Frame; 6]) {
                 polish(&mut found, &Loop { links, prismatic: black_box([false; 6]), target: [0.0; 3], length: number() });
                 let way = way::<6>();

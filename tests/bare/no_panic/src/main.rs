@@ -1,14 +1,14 @@
-//! A program that links only if nothing in it can panic: every function of every robot's module and of its inverse kinematics, the functions
-//! for many states of three robots, every step of the runtime, and every block of inverse kinematics.
+//! A program that links only if nothing in it can panic. It calls every function of every robot's module and of its inverse kinematics, and
+//! the functions for many states of three robots. It also calls every step of the runtime and every block of inverse kinematics.
 //!
-//! Its panic handler calls a function that nobody defines. Where the optimiser proves every panic unreachable, the handler is dropped and
-//! the program links; one surviving panic keeps it, and the linker says `undefined reference to a_panic_path_survives`. The program has
-//! neither `std` nor an allocator, so that it links proves their absence too. With the feature `deliberate-index` it must not link.
-//! The script `tests/bare/no-panic` builds it both ways.
+//! Its panic handler calls a function that nobody defines. Where the optimiser proves every panic unreachable, the handler is
+//! dropped and the program links; one surviving panic keeps it, and the linker reports
+//! `undefined reference to a_panic_path_survives`. The program has neither `std` nor an allocator, so linking proves that nothing
+//! needs them. With the feature `deliberate-index` it must not link. The script `tests/bare/no-panic` builds it both ways.
 //!
-//! This is a property of an optimised build (`--release`: all of it is one unit). The `unsafe` here is two attributes' worth and no more:
-//! `main` under its own name for the C library to start, which nothing else defines, and the declaration of the missing function, which
-//! promises that calling it is sound: it is never called, because a program with a call of it does not exist.
+//! This is a property of an optimised build (`--release`, a single codegen unit). The `unsafe` here is limited to two attributes.
+//! `main` keeps its name, which nothing else defines, for the C library to start. The declaration of the missing function
+//! promises that calling it is sound: no call ever happens, because a program with such a call does not link.
 #![no_std]
 #![no_main]
 

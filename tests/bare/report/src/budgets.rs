@@ -10,7 +10,7 @@ use std::collections::BTreeMap;
 /// The name of an empty call, whose cost is taken off.
 const NOTHING: &str = "(nothing)";
 
-/// What a function, or a step, costs or may cost.
+/// Cost, or budget, of a function or a step.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(crate) struct Cost {
@@ -50,7 +50,7 @@ pub(crate) type Modules = BTreeMap<String, BTreeMap<String, Cost>>;
 
 /// The ending of the modules that compute sines themselves.
 const FAST: &str = "_fast";
-/// That of those that call `libm` for them; what they cost has no budget.
+/// The ending of the modules that call `libm` for sines; their cost has no budget.
 const LIBM: &str = "_libm";
 
 /// The file of budgets; measurements have the same shape.
@@ -88,7 +88,7 @@ pub(crate) fn functions(image: &Image, printed: &Printed) -> Result<Modules, Str
         }
         let [nothing, _] =
             printed.functions.get(&format!("{module}::{NOTHING}")).ok_or("the firmware did not measure an empty call")?;
-        // Of two functions with the same code the linked program holds one: where no sine is in it, that of the other module will do.
+        // The linker merges functions with the same code. So a function without sines may only exist under the name of the other module.
         let twin = match module.strip_suffix(LIBM) {
             Some(robot) => format!("{robot}{FAST}::{name}"),
             None => format!("{}{LIBM}::{name}", module.trim_end_matches(FAST)),
@@ -105,7 +105,7 @@ pub(crate) fn functions(image: &Image, printed: &Printed) -> Result<Modules, Str
 }
 
 impl Measured {
-    /// Of the program that controls an arm and nothing else, of the one that measures that, and of the functions measured alone.
+    /// Measurements of the program that only controls an arm, of the program that measures it, and of the functions measured alone.
     pub(crate) fn of(control: &Image, image: &Image, printed: &Printed, functions: Modules) -> Result<Measured, String> {
         let [_, stack] =
             printed.functions.get("control::control_step").copied().ok_or("the firmware did not measure a control step")?;

@@ -1,11 +1,11 @@
-//! Holds what the firmware printed against this machine's bits and against the budgets, and writes the page about it.
+//! Compares the output of the firmware with this machine's bits and with the budgets, and writes the page about it.
 //!
 //! ```text
 //! armgen-bare-report BUDGETS.toml CONTROL.elf FIRMWARE.elf PRINTED.txt M4F.elf M4F.txt M7.elf M7.txt [--write PAGE.md TABLE.csv]
 //! ```
 //!
-//! The first program controls an arm and nothing else, the firmware simulates the arm and measures as well; the other two measure the
-//! functions of emitted modules, compiled for each processor.
+//! The first program only controls an arm. The firmware also simulates the arm and measures. The other two measure the functions
+//! of emitted modules, compiled for each processor.
 //!
 //! Exit code 0 if every bit agrees and every budget holds, 1 if not, 2 if a file cannot be read.
 

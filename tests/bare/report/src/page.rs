@@ -29,7 +29,7 @@ pub(crate) fn summary(measured: &Measured, printed: &Printed) -> String {
     )
 }
 
-/// The page; `m7` is what the functions cost on the other processor, `postures` how many were compared.
+/// The page; `m7`: cost of the functions on the other processor, `postures`: number of compared postures.
 pub(crate) fn page(measured: &Measured, m7: &Modules, budgets: &Budgets, printed: &Printed, postures: usize) -> String {
     let mut page = PREFACE.to_string();
     let costs = &measured.costs;

@@ -1,11 +1,11 @@
-//! What the firmware printed.
+//! Output of the firmware.
 
 use std::collections::BTreeMap;
 
 /// The emulated clock: 64 ns for each instruction, read by a timer of 25 MHz.
 const TICKS_PER_INSTRUCTION: f64 = 1.6;
 
-/// Instructions in so many ticks, to the nearest.
+/// Instructions in this many ticks, rounded.
 pub(crate) fn instructions(ticks: u64) -> u64 {
     (ticks as f64 / TICKS_PER_INSTRUCTION).round() as u64
 }

@@ -30,7 +30,7 @@ pub(crate) fn text_of(folder: &Path, name: &str) -> String {
     std::fs::read_to_string(folder.join(name)).unwrap_or_else(|error| panic!("{name}: {error}"))
 }
 
-/// What the text of a file in this folder comes to; paths are called by their names, wherever the repository lies.
+/// Parses the text of a file in this folder. Messages name paths by file name, so they do not depend on the place of the repository.
 pub(crate) fn parse(folder: &Path, name: &str, text: &str, robot: &Robot) -> Parsed {
     let open = |path: &Path| std::fs::read_to_string(folder.join(path));
     read::experiment(Path::new(name), &Source::new(name, text), robot, &open)
@@ -45,7 +45,7 @@ pub(crate) fn experiment(name: &str, text: &str, robot: &Robot) -> Experiment {
     }
 }
 
-/// What is said of a file that is no experiment for this robot.
+/// Diagnostics of a file that is no experiment for this robot.
 pub(crate) fn said(parsed: &Parsed) -> String {
     match parsed {
         Parsed::Experiment(_) => "taken".into(),

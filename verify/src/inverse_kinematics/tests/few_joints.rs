@@ -1,8 +1,8 @@
-//! Inverse kinematics of arms with fewer joints than a pose has rows: certified, and refused where something is not what it has to be.
+//! Inverse kinematics of arms with fewer joints than a pose has rows: certified if correct, and refused after a change.
 
 use super::{description, fault_of, module, verify};
 
-/// One to five joints given a whole pose: name, solutions at the pose of a random posture where they are counted, description.
+/// Arms of one to five joints for a whole pose: name, number of solutions at the pose of a random posture if counted, description.
 fn few() -> Vec<(&'static str, usize, String)> {
     let (o, q, minus) = ("0", "pi/2", "-pi/2");
     let arm = |name, solutions, rows: &[[&str; 5]]| (name, solutions, description("", rows));
@@ -58,8 +58,8 @@ fn few() -> Vec<(&'static str, usize, String)> {
     ]
 }
 
-/// Every pose of a random posture has as many solutions as branches with the virtual joints at 0; at rational poses, and beside them, the module
-/// finds as many as there are.
+/// Every pose of a random posture has as many solutions as branches with the virtual joints at 0. At rational poses, and next to them, the
+/// module finds all solutions.
 #[test]
 fn arms_with_few_joints_are_verified() {
     let mut wrong = Vec::new();
@@ -68,7 +68,7 @@ fn arms_with_few_joints_are_verified() {
         let now = std::time::Instant::now();
         let report = verify(&source, &text, 16);
         println!("{name}: {report}\n{:?}", now.elapsed());
-        // Three slides have no end.
+        // Three prismatic joints reach every position.
         let least = if name == "3P" { 0 } else { 2 };
         let right = report.passed()
             && report.generic.as_ref().is_some_and(|generic| generic.0 == solutions)
@@ -82,7 +82,7 @@ fn arms_with_few_joints_are_verified() {
     assert!(wrong.is_empty(), "{}", wrong.join("\n"));
 }
 
-/// Rows that are not judged, another tolerance, another arm, virtual joints that are elsewhere.
+/// Ignored rows, another tolerance, another arm, virtual joints at other places.
 #[test]
 fn other_texts_of_few_joints_are_refused() {
     let (_, _, arm) = few().remove(6);

@@ -1,4 +1,4 @@
-//! The lines of a function: values with names, the angles of its sines, and the sums of its results.
+//! The lines of a function: named values, the angles of its sines, and the sums of its results.
 
 use std::collections::BTreeMap;
 
@@ -9,11 +9,11 @@ use crate::enclosure::Float;
 use crate::program::{Angle, Argument, Output, Program, Step};
 use crate::reader::lexer::Fault;
 
-/// Steps and entries of results in a module.
+/// Maximum number of steps and result entries in a module.
 const MOST_STEPS: usize = 4_000_000;
-/// Brackets in brackets.
+/// Maximum depth of brackets.
 const MOST_BRACKETS: usize = 16;
-/// As many characters of a name tell it from others: in C 63 of a name inside of a function (C99, 5.2.4.1), in MATLAB the first 63 (`namelengthmax`).
+/// Significant characters of a name: in C 63 within a function (C99, 5.2.4.1), in MATLAB the first 63 (`namelengthmax`).
 const LONGEST_NAME: usize = 63;
 
 /// The name of a value: a letter, a digit, and digits, small letters and `_`.
@@ -24,7 +24,7 @@ fn is_value(word: &str) -> bool {
         && rest.bytes().all(|b| b.is_ascii_digit() || b.is_ascii_lowercase() || b == b'_')
 }
 
-/// Whether a bracket may be opened in so many others.
+/// Checks that a bracket may open inside this number of others.
 fn not_too_deep(place: &Place<'_>, brackets: usize) -> Result<(), Fault> {
     match brackets == MOST_BRACKETS {
         true => Err(place.fault(&format!("brackets are in more than {MOST_BRACKETS} others"))),
@@ -32,28 +32,28 @@ fn not_too_deep(place: &Place<'_>, brackets: usize) -> Result<(), Fault> {
     }
 }
 
-/// How a language writes what stands in a line.
+/// The notation of a language within a line.
 #[derive(Clone, Debug)]
 pub(in crate::reader) struct Syntax {
-    /// Around the index of an entry.
+    /// Texts around the index of an entry.
     pub(in crate::reader) index: (&'static str, &'static str),
     /// The index of the first entry.
     pub(in crate::reader) first: usize,
     /// Multiplication and division.
     pub(in crate::reader) operators: [&'static str; 2],
-    /// Behind a number.
+    /// Suffix of a number.
     pub(in crate::reader) suffix: &'static str,
-    /// In front of the entry that a sign is of.
+    /// Text before the entry whose sign is taken.
     pub(in crate::reader) sign: String,
-    /// In front of the entry that what is left of Stribeck friction is of.
+    /// Text before the entry of a Stribeck exponential.
     pub(in crate::reader) stribeck: String,
-    /// In front of two factors and what is added to their product with one rounding, where the language has that.
+    /// Text before the two factors and the summand of a fused operation, if the language has it.
     pub(in crate::reader) fused: Option<String>,
-    /// Around the value of a name: `const double `, ` = `, `;`.
+    /// Texts around a definition: `const double `, ` = `, `;`.
     pub(in crate::reader) define: [String; 3],
-    /// Around the index of a value in a list.
+    /// Texts around the index of a value in a list.
     pub(in crate::reader) list: (&'static str, &'static str),
-    /// Between two angles.
+    /// Separator of angles.
     pub(in crate::reader) angles: &'static str,
 }
 
@@ -65,15 +65,15 @@ impl Syntax {
     }
 }
 
-/// A function on its way to a program.
+/// A function while its program is built.
 pub(in crate::reader) struct Body<'a, 's> {
     pub(super) syntax: &'s Syntax,
     real: Float,
     pub(in crate::reader) program: Program,
     scope: BTreeMap<&'a str, usize>,
-    /// Sines are used, and signs.
+    /// Whether it uses sines, signs and Stribeck friction.
     pub(in crate::reader) asks: [bool; 3],
-    /// Steps and entries of the functions before.
+    /// Number of steps and entries of the functions before.
     steps: usize,
 }
 
@@ -96,7 +96,7 @@ impl<'a, 's> Body<'a, 's> {
         Body { syntax, real, program, scope: BTreeMap::new(), asks: [false; 3], steps }
     }
 
-    /// Steps and entries of this function and those before.
+    /// Number of steps and entries of this function and those before.
     pub(in crate::reader) fn steps(&self) -> usize {
         self.steps + self.program.steps.len() + self.program.outputs.len()
     }
@@ -110,7 +110,7 @@ impl<'a, 's> Body<'a, 's> {
         Ok(self.program.steps.len() - 1)
     }
 
-    /// Gives a value a name.
+    /// Assigns a name to a value.
     pub(in crate::reader) fn bind(&mut self, name: &'a str, value: usize, line: usize) -> Result<(), Fault> {
         if !is_value(name) {
             let reason = format!("`{name}` where the name of a value can stand, such as t1, s2 or c2");
@@ -128,7 +128,7 @@ impl<'a, 's> Body<'a, 's> {
         self.scope.get(name).copied().ok_or_else(|| Fault { line, reason: reason() })
     }
 
-    /// Leaves the names of the caller, for a part with names of its own; they come back by [`Body::leave`].
+    /// Hides the names of the caller inside a part, which has its own names; [`Body::leave`] restores them.
     pub(in crate::reader) fn enter(&mut self) -> BTreeMap<&'a str, usize> {
         std::mem::take(&mut self.scope)
     }
@@ -137,14 +137,14 @@ impl<'a, 's> Body<'a, 's> {
         self.scope = scope;
     }
 
-    /// What a line defines, if it is one: a name and its value.
+    /// The name and the value that a line defines, if it is a definition.
     pub(in crate::reader) fn definition(&self, lines: &Lines<'a>) -> Option<(&'a str, &'a str)> {
         let [begin, between, end] = &self.syntax.define;
         let inner = lines.peek().strip_prefix(begin.as_str())?.strip_suffix(end.as_str())?;
         inner.split_once(between.as_str()).filter(|(name, _)| is_value(name))
     }
 
-    /// Takes the line that gives a name such a value, if it stands here: a value of an array.
+    /// Takes the line that assigns a name to this array element, if it is the current line.
     pub(in crate::reader) fn element(&mut self, lines: &mut Lines<'a>, from: &str, value: usize) -> Result<bool, Fault> {
         match self.definition(lines) {
             Some((name, found)) if found == from => {
@@ -173,7 +173,7 @@ impl<'a, 's> Body<'a, 's> {
         Ok(())
     }
 
-    /// A whole sum.
+    /// A complete sum.
     fn sum_of(&mut self, text: &'a str, line: usize) -> Result<usize, Fault> {
         let mut place = Place { rest: text, line };
         let value = self.sum(&mut place, 0)?;
@@ -181,7 +181,7 @@ impl<'a, 's> Body<'a, 's> {
         Ok(value)
     }
 
-    /// The angles of a list, each followed by steps for its sine and cosine: these.
+    /// The angles of a list; returns the steps for their sines and cosines.
     pub(in crate::reader) fn angles(&mut self, text: &'a str, line: usize) -> Result<Vec<(usize, usize)>, Fault> {
         let mut place = Place { rest: text, line };
         let mut waves = Vec::new();
@@ -214,7 +214,7 @@ impl<'a, 's> Body<'a, 's> {
             } else {
                 let (argument, joint, step) = self.entry(place)?;
                 let factor = if minus { -1 } else { 1 };
-                // As rounding depends on the order, it is the same everywhere: added ones first.
+                // Rounding depends on the order, so the order is fixed: added joints first.
                 let follows = angle.terms.last().is_none_or(|&(last, before)| (-before, last) < (-factor, joint));
                 let new = angle.terms.iter().all(|(other, _)| *other != joint);
                 if argument != Argument::Q || !follows || !new {

@@ -8,26 +8,26 @@ use crate::enclosure::Float;
 use crate::reader::constant::Constant;
 use crate::reader::lexer::Fault;
 
-/// Entries of an array of constants.
+/// Maximum number of entries in an array of constants.
 const MOST_ENTRIES: usize = 4096;
-/// Joints, as many as a description can have and more.
+/// Maximum number of joints, above the limit of descriptions.
 const MOST_JOINTS: usize = 128;
 
-/// The values of constants, as they stand in a line.
+/// The notation of constants in a language.
 #[derive(Clone, Copy, Debug)]
 pub(in crate::reader) struct Constants {
     pub(in crate::reader) real: Float,
     pub(in crate::reader) suffix: &'static str,
-    /// Around a text.
+    /// The quote around a text.
     pub(in crate::reader) quotes: char,
-    /// What an array of such entries begins with, between them, at its end, and an array without entries; whether it stands in another.
+    /// Texts at the beginning of an array, between its entries and at its end, and the empty array; the flag marks an inner array.
     pub(in crate::reader) list: fn(Entry, bool) -> [&'static str; 4],
     pub(in crate::reader) truth: [&'static str; 2],
-    /// Infinity; a minus sign stands before it where it is negative.
+    /// Infinity; a minus sign precedes it if negative.
     pub(in crate::reader) infinity: &'static str,
 }
 
-/// What an entry of a constant is.
+/// The kind of a constant's entries.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(in crate::reader) enum Entry {
     Text,
@@ -36,7 +36,7 @@ pub(in crate::reader) enum Entry {
     Real,
 }
 
-/// The constants that a module may have: their names, what their entries are, and arrays in arrays.
+/// The permitted constants: name, kind of entries, and nesting depth of arrays.
 pub(in crate::reader) const CONSTANTS: [(&str, Entry, usize); 15] = [
     ("NAME", Entry::Text, 0),
     ("DOF", Entry::Integer, 0),
@@ -113,7 +113,7 @@ impl Constants {
     }
 }
 
-/// The sizes that constants of a module state.
+/// The sizes in the constants of a module.
 pub(in crate::reader) fn sizes(constants: &BTreeMap<String, Constant>) -> Result<Sizes, Fault> {
     let of = |name: &str, most: usize| match constants.get(name) {
         Some(Constant::Integer(value)) if *value <= most as u64 => Ok(*value as usize),

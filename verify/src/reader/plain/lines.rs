@@ -1,13 +1,13 @@
-//! A text as lines of code, each with the comment in front of it.
+//! A text as lines of code, each with its preceding comment.
 
 use crate::check::Check;
 use crate::reader::lexer::{is_hidden, name_of, Fault};
 use crate::reader::LONGEST;
 
-/// What a language reads in comments: escapes in Python's, splices and trigraphs that end those of C, the encoding of a Python file.
+/// Comment text with a meaning: escapes in Python, splices and trigraphs in C, the encoding of a Python file.
 const ESCAPES: [&str; 4] = ["\\", "??/", "coding:", "coding="];
 
-/// Whether a line of code says at its end that the next one goes on with it: in MATLAB, and in a macro of C.
+/// Whether the next line continues a line of code: in MATLAB, and in a C macro.
 fn goes_on(line: &str) -> bool {
     line.ends_with("...") || line.ends_with('\\')
 }
@@ -17,11 +17,11 @@ fn goes_on(line: &str) -> bool {
 pub(in crate::reader) struct Line<'a> {
     pub(in crate::reader) number: usize,
     pub(in crate::reader) text: &'a str,
-    /// The lines of the comment in front of it.
+    /// The lines of the preceding comment.
     pub(in crate::reader) comment: Vec<&'a str>,
 }
 
-/// The lines of code of a text, one after the other.
+/// The lines of code of a text, in order.
 #[derive(Clone, Debug)]
 pub(in crate::reader) struct Lines<'a> {
     pub(in crate::reader) all: Vec<Line<'a>>,
@@ -29,14 +29,14 @@ pub(in crate::reader) struct Lines<'a> {
     last: usize,
 }
 
-/// How comments stand in a language: each begins at the beginning of a line and ends at the end of one.
+/// The comments of a language: each begins at the start of a line and ends at the end of a line.
 #[derive(Clone, Copy, Debug)]
 pub(in crate::reader) struct Comments {
-    /// What a comment of one line begins with.
+    /// Prefix of a line comment.
     pub(in crate::reader) line: Option<&'static str>,
-    /// What a longer comment begins and ends with.
+    /// Beginning and end of a block comment.
     pub(in crate::reader) block: Option<(&'static str, &'static str)>,
-    /// How a line of code ends that a longer comment can stand behind: in Python it is a text, which is idle at the beginning of a block alone.
+    /// End of a line of code that a block comment may follow. In Python such a comment is a string, without effect only at the start of a block.
     pub(in crate::reader) behind: &'static str,
 }
 
@@ -91,12 +91,12 @@ impl<'a> Lines<'a> {
         }
     }
 
-    /// The line that stands here, nothing behind the last.
+    /// The current line, empty after the last.
     pub(in crate::reader) fn peek(&self) -> &'a str {
         self.all.get(self.at).map_or("", |line| line.text)
     }
 
-    /// The same lines behind so many of other files.
+    /// The same lines with numbers shifted by `before`, the lines of other files.
     pub(in crate::reader) fn behind(mut self, before: usize) -> Lines<'a> {
         self.all.iter_mut().for_each(|line| line.number += before);
         self.last += before;
@@ -115,12 +115,12 @@ impl<'a> Lines<'a> {
         self.at >= self.all.len()
     }
 
-    /// What is wrong with the line that stands here.
+    /// A fault of the current line.
     pub(in crate::reader) fn fault(&self, reason: impl Into<String>) -> Fault {
         Fault { line: self.number(), reason: reason.into() }
     }
 
-    /// The line as it is shown.
+    /// The line in the form for messages.
     pub(in crate::reader) fn shown(&self) -> String {
         if self.ended() {
             return "the end of the text".into();
@@ -135,7 +135,7 @@ impl<'a> Lines<'a> {
         found
     }
 
-    /// Takes a line, which must stand here.
+    /// Takes a line, which must be the current one.
     pub(in crate::reader) fn expect(&mut self, text: &str) -> Result<(), Fault> {
         match self.eat(text) {
             true => Ok(()),
@@ -149,7 +149,7 @@ impl<'a> Lines<'a> {
         lines.all.iter().try_for_each(|line| self.expect(line.text))
     }
 
-    /// Takes a line that begins and ends so; what stands between.
+    /// Takes a line with this beginning and end; returns the text between.
     pub(in crate::reader) fn between(&mut self, begin: &str, end: &str) -> Result<&'a str, Fault> {
         let found = self.peek().strip_prefix(begin).and_then(|rest| rest.strip_suffix(end));
         let found = found.ok_or_else(|| {

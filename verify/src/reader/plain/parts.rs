@@ -6,12 +6,11 @@ use super::body::Body;
 use super::lines::Lines;
 use crate::reader::lexer::Fault;
 
-/// The parts of long functions, in languages that hand values to a part as a list and get one back; their lines are read where they are
-/// called.
+/// The parts of long functions, in languages that pass values to a part as a list and return a list. Their lines are read at their calls.
 #[derive(Default)]
 pub(in crate::reader) struct Parts<'a>(BTreeMap<&'a str, Part<'a>>);
 
-/// A part of a long function: its arguments, and where its lines begin.
+/// A part of a long function: its arguments, and the place of its lines.
 struct Part<'a> {
     arguments: Vec<&'a str>,
     body: usize,
@@ -19,7 +18,7 @@ struct Part<'a> {
 }
 
 impl<'a> Parts<'a> {
-    /// A part whose head stands at `line`.
+    /// Adds a part whose head is at `line`.
     pub(in crate::reader) fn add(
         &mut self,
         name: &'a str,
@@ -33,20 +32,20 @@ impl<'a> Parts<'a> {
         }
     }
 
-    /// A part that nothing calls.
+    /// A part without a call.
     pub(in crate::reader) fn unused(&self) -> Option<&'a str> {
         self.0.iter().find_map(|(name, part)| (!part.used).then_some(*name))
     }
 
-    /// The arguments of the function that a part takes, as its call passes them on.
+    /// The function's arguments that a part takes, as in its call.
     pub(in crate::reader) fn passed(&mut self, name: &str, lines: &Lines<'a>) -> Result<String, Fault> {
         let part = self.0.get_mut(name).ok_or_else(|| lines.fault(format!("there is no part `{name}`")))?;
         part.used = true;
         Ok(part.arguments.iter().map(|argument| format!("{argument}, ")).collect())
     }
 
-    /// Takes the call of a part in as if its lines stood here: the names that it is handed and the line of the call, how the names of its
-    /// results are read, and what its results are called.
+    /// Reads the lines of a called part as if they were here. The arguments are the passed names, the line of the call, the reader for the names of
+    /// results, and the name of the list of results.
     pub(in crate::reader) fn take_in(
         &self,
         name: &str,
@@ -64,7 +63,7 @@ impl<'a> Parts<'a> {
         let taken = names.into_iter().map(|name| body.value(name, line)).collect::<Result<Vec<usize>, Fault>>()?;
         let back = std::mem::replace(&mut lines.at, part.body);
         let scope = body.enter();
-        // Of the function's arguments it knows those that it takes.
+        // It only knows those arguments of the function that it takes.
         body.program.arguments.retain(|own| part.arguments.contains(&own.name()));
         for (i, value) in taken.into_iter().enumerate() {
             if !body.element(lines, &body.syntax.value("taken", i), value)? {

@@ -1,10 +1,10 @@
-//! A place in a line, and what can be taken there: words, indices, numbers.
+//! A position in a line, which reads words, indices and numbers.
 
 use crate::enclosure::Float;
 use crate::program::Literal;
 use crate::reader::lexer::Fault;
 
-/// A place in a line.
+/// A position in a line.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Place<'a> {
     pub(super) rest: &'a str,
@@ -48,7 +48,7 @@ impl<'a> Place<'a> {
         word.parse::<usize>().ok().filter(|value| value.to_string() == word).ok_or_else(|| start.fault("an index can stand"))
     }
 
-    /// A number without a sign, in the shortest decimal of its float, with what the language writes behind it.
+    /// An unsigned number: the shortest decimal of its float, with the suffix of the language.
     pub(super) fn literal(&mut self, real: Float, suffix: &str) -> Result<Literal, Fault> {
         let start = *self;
         let bytes = self.rest.as_bytes();

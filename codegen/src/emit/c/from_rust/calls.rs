@@ -88,7 +88,7 @@ impl<'a> Lower<'a, '_> {
         let (path, sizes) = self.inferred.calls.get(&at).cloned().ok_or("a call of an unknown function")?;
         let function = *self.tr.program.functions.get(&path).ok_or("a call of an unknown function")?;
         let values: Vec<&'a syn::Expr> = receiver.into_iter().chain(arguments).collect();
-        // Functions that are arguments are part of which function is called.
+        // Functions passed as arguments are part of the callee's identity: each combination is translated separately.
         let mut given = Vec::new();
         let mut handed = Vec::new();
         for (place, (input, value)) in function.signature.inputs.iter().zip(&values).enumerate() {

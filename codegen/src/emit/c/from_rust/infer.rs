@@ -19,11 +19,11 @@ pub(super) struct Call {
     pub(super) sizes: Vec<(String, Length)>,
 }
 
-/// What is known of a function. Expressions and patterns are named by their addresses, which stay as long as the program.
+/// Types inferred so far in a function. Addresses identify expressions and patterns; they are stable as long as the program lives.
 pub(super) struct Inference<'a, 'p> {
     pub(super) program: &'p Program<'a>,
     pub(super) unknowns: Unknowns,
-    /// The closures of all functions so far; those of this function at the end.
+    /// The closures of all functions so far, ending with the closures of this function.
     pub(super) closures: &'p mut Vec<Signature>,
     pub(super) sizes: Sizes,
     pub(super) scopes: Vec<HashMap<String, Type>>,
@@ -33,7 +33,7 @@ pub(super) struct Inference<'a, 'p> {
     returns: Vec<Type>,
 }
 
-/// What is known of a function in the end.
+/// The inferred types of a function.
 pub(super) struct Inferred {
     types: HashMap<usize, Type>,
     /// The functions that are called, with their sizes.
@@ -56,7 +56,7 @@ pub(super) fn address<T>(node: &T) -> usize {
 type Found<T> = Result<T, String>;
 
 impl<'a, 'p> Inference<'a, 'p> {
-    /// Of a function with these sizes, whose arguments that are functions themselves are `given` by their places.
+    /// Infers a function with these sizes. `given` lists its function arguments by position.
     pub(super) fn of(
         program: &'p Program<'a>,
         closures: &'p mut Vec<Signature>,
@@ -95,7 +95,7 @@ impl<'a, 'p> Inference<'a, 'p> {
         Ok(this)
     }
 
-    /// Of no function: types as they are written, for known sizes.
+    /// Resolves written types for known sizes, outside of any function.
     pub(super) fn bare(program: &'p Program<'a>, closures: &'p mut Vec<Signature>, sizes: Sizes, of: Option<Type>) -> Self {
         Inference {
             program,
@@ -131,7 +131,7 @@ impl<'a, 'p> Inference<'a, 'p> {
         Ok(Inferred { types, calls: known_calls, sizes })
     }
 
-    /// What a function returns.
+    /// Return type of a function.
     pub(super) fn output(&mut self, signature: &'a syn::Signature) -> Found<Type> {
         match &signature.output {
             syn::ReturnType::Default => Ok(Type::Unit),
@@ -283,7 +283,7 @@ impl<'a, 'p> Inference<'a, 'p> {
         if let Some((_, otherwise)) = &init.diverge {
             self.expression(otherwise, None)?;
         }
-        // What is written may be a slice of an array.
+        // The written type may be a slice where the value is an array.
         self.pattern(pattern, &written.unwrap_or(found), false)
     }
 

@@ -1,4 +1,4 @@
-//! Patterns: what they bind, and when they match; options.
+//! Patterns (their bindings and conditions) and options.
 
 use syn::Expr;
 
@@ -112,7 +112,7 @@ impl<'a> Lower<'a, '_> {
                 let ty = self.ty(ident)?;
                 let mutable = ident.mutability.is_some();
                 match &ty {
-                    // A reference is another name for what it leads to.
+                    // A reference is another name for its target.
                     Type::Reference(to, changes) if !matches!(**to, Type::Slice(_)) => {
                         let value = self.placed(value, &ty, &name)?;
                         self.bind_name(&name, Bound::Value(value, ty.clone(), *changes));
@@ -196,7 +196,7 @@ impl<'a> Lower<'a, '_> {
         Ok(all)
     }
 
-    /// An option: its condition and what is in it.
+    /// An option: its condition and its content.
     pub(super) fn option(&mut self, value: &'a syn::Expr) -> Found<Item> {
         match value {
             Expr::Paren(inner) => self.option(&inner.expr),
@@ -231,7 +231,7 @@ impl<'a> Lower<'a, '_> {
         }
     }
 
-    /// What is taken from an iterator that is kept.
+    /// The next item of a stored iterator.
     fn next(&mut self, call: &'a syn::ExprMethodCall) -> Found<Item> {
         let Expr::Path(path) = &*call.receiver else { return Err("`next` of an expression".into()) };
         let name = last(&path.path);
@@ -280,12 +280,12 @@ impl<'a> Lower<'a, '_> {
         Ok(Value::place(variable))
     }
 
-    /// A view's part from an index on; where a slice of it is asked for.
+    /// The part of a view that starts at an index.
     pub(super) fn shifted(view: &View, by: &str, count: Count) -> View {
         View { offset: Some(sum(view.offset.as_deref(), by)), count, ..view.clone() }
     }
 
-    /// The address of a closure that stands as an argument.
+    /// The closure expression of an argument.
     pub(super) fn closure_of(value: &'a syn::Expr) -> Found<&'a syn::ExprClosure> {
         match value {
             Expr::Closure(closure) => Ok(closure),

@@ -35,7 +35,7 @@ impl<'a> Lower<'a, '_> {
         }
     }
 
-    /// All elements of an array, by reference where the expression is one.
+    /// All elements of an array, by reference where the expression is a reference.
     fn elements(&mut self, value: &'a syn::Expr) -> Found<Iter<'a>> {
         let by_reference = matches!(self.ty(value)?, Type::Reference(..));
         Ok(Iter::View(self.view(value)?, !by_reference))
@@ -135,7 +135,7 @@ impl<'a> Lower<'a, '_> {
         })
     }
 
-    /// Binds the arguments of a closure whose body stands where it is called.
+    /// Binds the arguments of a closure that is inlined at its call.
     pub(super) fn bind_inputs(&mut self, closure: &'a syn::ExprClosure, items: Vec<Item>) -> Found<()> {
         closure.inputs.iter().zip(items).try_for_each(|(pattern, item)| self.bind(pattern, item))
     }
@@ -202,7 +202,8 @@ impl<'a> Lower<'a, '_> {
         Ok(())
     }
 
-    /// The head of a loop, what it runs over by its variable, and the variable; of a range the variable is the value, of this type.
+    /// The head of a loop, the iterator that its variable indexes, and the variable. For a range the variable is the value
+    /// itself, with this type.
     #[allow(clippy::type_complexity)]
     fn head<'i>(&mut self, of: &'i Iter<'a>, hint: &str) -> Found<(String, &'i Iter<'a>, String, Option<Type>)> {
         // A name of its own inside of the block that is about to be opened.

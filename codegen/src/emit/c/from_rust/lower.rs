@@ -29,7 +29,7 @@ impl<'a, 't> Lower<'a, 't> {
         }
     }
 
-    /// A function, written behind those before it.
+    /// Writes a function after the previous ones.
     pub(super) fn function(
         tr: &'t mut Translator<'a>,
         inferred: &'t Inferred,
@@ -114,7 +114,7 @@ impl<'a, 't> Lower<'a, 't> {
         Ok(())
     }
 
-    /// A closure as a function of its own, with a variable for what it has captured.
+    /// A closure as a function of its own, with a variable for its captures.
     pub(super) fn lifted(&mut self, closure: &'a syn::ExprClosure, hint: &str) -> Found<Bound<'a>> {
         let Type::Closure(id) = *self.inferred.ty(address(closure))? else { return Err("no closure".into()) };
         let signature = self.tr.closures[id].clone();
@@ -147,7 +147,7 @@ impl<'a, 't> Lower<'a, 't> {
         self.inferred.ty(address(node)).cloned()
     }
 
-    /// A value that has a place: a variable with this name, if there is none so far.
+    /// A value with a place: a variable with this name, if it has no place yet.
     pub(super) fn placed(&mut self, value: Value, ty: &Type, hint: &str) -> Found<Value> {
         if value.kind != Kind::Value {
             return Ok(value);
@@ -158,7 +158,7 @@ impl<'a, 't> Lower<'a, 't> {
         Ok(Value::place(variable))
     }
 
-    /// An index that stays what it is while a place is used.
+    /// An index that does not change while a place is used.
     pub(super) fn stable(&mut self, value: &'a syn::Expr) -> Found<String> {
         let found = self.expression(value)?;
         if found.text.bytes().all(|b| b.is_ascii_digit()) || (found.kind == Kind::Value && is_word(&found.text)) {
@@ -174,7 +174,7 @@ impl<'a, 't> Lower<'a, 't> {
         Ok(variable)
     }
 
-    /// The statements that something writes, and what it gives; they are not written.
+    /// The statements that `write` would emit, without emitting them, and its result.
     pub(super) fn apart<T>(&mut self, write: impl FnOnce(&mut Self) -> Found<T>) -> Found<(String, T)> {
         let outer = std::mem::take(&mut self.text);
         let blocks = self.frames.last().map(|frame| frame.blocks.clone()).unwrap_or_default();
@@ -349,7 +349,7 @@ impl<'a, 't> Lower<'a, 't> {
             return self.compared(binary, *length);
         }
         let left = self.expression(&binary.left)?;
-        // What the right side needs statements for is not run where Rust does not run it either.
+        // Rust evaluates the right side only if the left side does not decide; so its statements run under the same condition.
         let (statements, right) = self.apart(|this| this.expression(&binary.right))?;
         if !statements.is_empty() {
             if matches!(binary.op, And(_) | Or(_)) {

@@ -1,4 +1,4 @@
-//! The types of calls of methods: those of the program, and those of Rust's library that the blocks use.
+//! The types of method calls: methods of the program, and methods of Rust's library that the blocks use.
 
 use super::infer::{address, Inference};
 use super::types::{Integer, Type};
@@ -29,7 +29,7 @@ impl<'a> Inference<'a, '_> {
         }
     }
 
-    /// What a closure that stands as an argument gives of these.
+    /// The output type of a closure argument for these inputs.
     fn applied(&mut self, call: &'a syn::ExprMethodCall, place: usize, inputs: &[Type]) -> Found<Type> {
         let argument = call.args.iter().nth(place).ok_or("an argument is missing")?;
         let ty = match argument {

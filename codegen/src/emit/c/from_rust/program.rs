@@ -13,7 +13,7 @@ pub(super) struct Function<'a> {
     pub(super) block: &'a syn::Block,
 }
 
-/// All items, and the macros that stand for expressions.
+/// All items, and the macros that expand to expressions.
 #[derive(Default)]
 pub(super) struct Program<'a> {
     pub(super) aliases: BTreeMap<String, &'a syn::Type>,
@@ -23,11 +23,11 @@ pub(super) struct Program<'a> {
     pub(super) constants: BTreeMap<String, &'a syn::ItemConst>,
     /// By their names, methods as `Type::method`.
     pub(super) functions: BTreeMap<String, Function<'a>>,
-    /// What macros stand for, by the addresses of their tokens.
+    /// Expansions of macros, by the addresses of their tokens.
     pub(super) macros: BTreeMap<usize, &'a syn::Expr>,
 }
 
-/// What the macros of a text stand for, by the addresses of their expressions.
+/// Expansions of the macros of a text, by the addresses of their expressions.
 pub(super) fn expanded(items: &[syn::Item]) -> Result<Vec<(usize, syn::Expr)>, String> {
     struct Expansion(Result<Vec<(usize, syn::Expr)>, String>);
     impl Visit<'_> for Expansion {

@@ -1,4 +1,4 @@
-//! A function of C while it is written: its lines, and what names stand for, block by block.
+//! A function of C while it is written: its lines, and the meanings of names, block by block.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -7,31 +7,31 @@ use super::translator::{c_name, Found, Translator};
 use super::types::Type;
 use super::values::{Iter, Value, View};
 
-/// What a name stands for.
+/// Meaning of a name.
 #[derive(Clone)]
 pub(super) enum Bound<'a> {
     /// A variable or a place, and whether it may be changed.
     Value(Value, Type, bool),
     View(View),
-    /// An iterator, and the variable that counts what has been taken from it.
+    /// An iterator, and the variable that counts the items taken from it.
     Iterator(Iter<'a>, Option<String>),
-    /// A closure, and a pointer to what it has captured.
+    /// A closure, and a pointer to its captures.
     Closure(usize, Option<String>),
     Function(String),
 }
 
-/// What is known inside of one function of C.
+/// Scope of a function of C.
 #[derive(Default)]
 pub(super) struct Frame<'a> {
     scopes: Vec<BTreeMap<String, Bound<'a>>>,
     /// The names of variables by the blocks of C.
     pub(super) blocks: Vec<BTreeSet<String>>,
-    /// Of a closure: the fields of what it has captured, and their values where it is made.
+    /// For a closure: the fields of its captures, with their values at its creation.
     pub(super) fields: Vec<(String, String)>,
     captured: BTreeMap<String, Bound<'a>>,
 }
 
-/// What a function of Rust is translated with: lines are written behind each other.
+/// Translates a function of Rust, line after line.
 pub(super) struct Lower<'a, 't> {
     pub(super) tr: &'t mut Translator<'a>,
     pub(super) inferred: &'t Inferred,
@@ -81,7 +81,7 @@ impl<'a> Lower<'a, '_> {
         }
     }
 
-    /// Names that are free again behind this.
+    /// Opens a block whose names are free again after it.
     pub(super) fn open_names(&mut self) {
         if let Some(frame) = self.frames.last_mut() {
             frame.blocks.push(BTreeSet::new());

@@ -166,7 +166,7 @@ impl<'a> Lower<'a, '_> {
         }
     }
 
-    /// What a name is bound to.
+    /// The binding of a name.
     fn bound(&mut self, ident: &'a syn::PatIdent, value: &'a syn::Expr) -> Found<Bound<'a>> {
         let ty = self.ty(ident)?;
         let name = ident.ident.to_string();
@@ -294,7 +294,7 @@ impl<'a> Lower<'a, '_> {
         Ok(())
     }
 
-    /// What stands behind `else`; a further choice beside the first where it needs no statements.
+    /// The `else` branch; `else if` where its condition needs no statements.
     fn alternative(&mut self, otherwise: &'a syn::Expr, goal: &Goal) -> Found<()> {
         if let syn::Expr::If(choice) = otherwise {
             if !matches!(&*choice.cond, syn::Expr::Let(_)) {
@@ -356,7 +356,7 @@ impl<'a> Lower<'a, '_> {
     }
 
     fn for_loop(&mut self, each: &'a syn::ExprForLoop) -> Found<()> {
-        // What the iterator needs is seen by nothing else.
+        // A scope of its own hides the variables of the iterator.
         self.open_scope();
         let of = self.iterator(&each.expr)?;
         let hint = hint(&each.pat, &of);
@@ -396,7 +396,7 @@ impl<'a> Lower<'a, '_> {
             return Ok(());
         }
         let left = self.expression(&assign.left)?;
-        // What is put together may read what it replaces.
+        // An aggregate may read the value that it replaces, so it is built first.
         let right = if self.is_put_together(&assign.right)? {
             Value::place(self.declared("value", &ty, false, &assign.right)?)
         } else {
@@ -498,7 +498,7 @@ fn only_of(value: &syn::Expr) -> Option<&syn::Expr> {
     }
 }
 
-/// What the variable of a loop is called.
+/// Name of the variable of a loop.
 fn hint(pattern: &syn::Pat, of: &Iter<'_>) -> String {
     let ident = |pattern: &syn::Pat| match pattern {
         syn::Pat::Ident(ident) => Some(ident.ident.to_string()),

@@ -16,7 +16,7 @@ pub(super) struct Instance {
     pub(super) inputs: Vec<Type>,
 }
 
-/// A closure as a function of C: its name, and the struct of what it has captured, if anything.
+/// A closure as a function of C: its name, and the struct of its captures, if any.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Callable {
     pub(super) function: String,
@@ -85,7 +85,7 @@ impl<'a> Translator<'a> {
         Ok(fields.into_iter().map(|(name, ty)| (name, bare.unknowns.settled(&ty))).collect())
     }
 
-    /// What a type is called, as a part of other names.
+    /// Name of a type, as a part of other names.
     fn called(&self, ty: &Type) -> Found<String> {
         let size = |length: &Length| match length {
             Length::Known(size) => Ok(*size),
@@ -220,7 +220,7 @@ impl<'a> Translator<'a> {
         if !has_fields(item) {
             return Ok(format!("\n{said}typedef enum {{\n{variants}\n}} {name};\n"));
         }
-        // Named by itself: C++ looks for what is inside of a struct there alone.
+        // The enum is declared outside of the struct: C++ finds names declared in a struct only in its scope.
         let number = format!("{}_variant_type", name.strip_suffix("_type").unwrap_or(name));
         let mut text = format!("\ntypedef enum {{\n{variants}\n}} {number};\n\n{said}typedef struct {{\n    {number} variant;\n");
         for field in item.variants.iter().flat_map(|variant| &variant.fields) {
@@ -253,7 +253,7 @@ pub(super) fn snake(name: &str) -> String {
     text
 }
 
-/// A name that C or C++ has for itself, or that headers of systems have made a macro, with a line behind it.
+/// Appends an underscore to a name that C or C++ reserves, or that system headers define as a macro.
 pub(super) fn c_name(name: &str) -> String {
     const TAKEN: &[&str] = &[
         "double",

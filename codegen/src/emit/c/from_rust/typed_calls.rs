@@ -103,7 +103,7 @@ impl<'a> Inference<'a, '_> {
         if let (Some(receiver), Some(of)) = (&receiver, &of) {
             self.unify(receiver.behind(), of)?;
         }
-        // The types that are wanted, in the names of the callee; then the arguments, in those of the caller.
+        // First the expected types, in the scope of the callee; then the arguments, in the scope of the caller.
         let mut wanted = Vec::new();
         for argument in &function.signature.inputs {
             if let syn::FnArg::Typed(argument) = argument {
@@ -169,7 +169,7 @@ impl<'a> Inference<'a, '_> {
         Ok(Some(Signature { inputs, output }))
     }
 
-    /// The body of a function that returns an iterator stands where it is called.
+    /// A function that returns an iterator is inlined at its call.
     fn inlined(&mut self, function: Function<'a>) -> Found<()> {
         self.scopes.push(HashMap::new());
         for argument in &function.signature.inputs {
@@ -184,13 +184,13 @@ impl<'a> Inference<'a, '_> {
     }
 }
 
-/// What an argument is asked for.
+/// Expected type of an argument.
 enum Wanted {
     Type(Type),
     Callable(Signature),
 }
 
-/// `Fn(A, B) -> C` of an argument's type, behind references.
+/// `Fn(A, B) -> C` of an argument's type, through references.
 pub(super) fn callable_bounds(ty: &syn::Type) -> Option<&syn::ParenthesizedGenericArguments> {
     match ty {
         syn::Type::Reference(to) => callable_bounds(&to.elem),

@@ -94,7 +94,7 @@ impl<'a> Inference<'a, '_> {
         name == "None" || self.program.constants.contains_key(name)
     }
 
-    /// The fields of a struct, or of a variant of an enum, with their types; the sizes are those of `ty`, which is made of it.
+    /// The fields of a struct, or of a variant of an enum, with their types; `ty`, an instance of it, gives the sizes.
     pub(super) fn fields(&mut self, path: &syn::Path, ty: &Type) -> Found<Vec<(String, Type)>> {
         let all = names(path);
         if let [of, variant] = &all[..] {

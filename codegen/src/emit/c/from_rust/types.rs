@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-/// A type; references say whether what they lead to may be changed.
+/// A type; references record whether their target is mutable.
 #[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub(super) enum Type {
     Real,
@@ -76,7 +76,7 @@ impl Type {
     }
 }
 
-/// What is known of the open types and lengths of one function.
+/// Solutions found so far for the unknown types and lengths of one function.
 #[derive(Default)]
 pub(super) struct Unknowns {
     types: Vec<Option<Type>>,
@@ -117,7 +117,7 @@ impl Unknowns {
         }
     }
 
-    /// The same, where an integer of which nothing more is known is an i32.
+    /// The same, where an otherwise unknown integer is an i32.
     pub(super) fn settled(&self, ty: &Type) -> Type {
         let boxed = |ty: &Type| Box::new(self.settled(ty));
         match self.resolve(ty) {

@@ -1,4 +1,4 @@
-//! Texts of C that stand for values, with what is needed to put them together.
+//! Texts of C for values, with the facts needed to combine them.
 
 use super::types::Type;
 
@@ -16,7 +16,7 @@ pub(super) enum Binding {
     Primary,
 }
 
-/// What a text is.
+/// Meaning of a text as a C expression.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Kind {
     /// A value that has no place.
@@ -109,7 +109,7 @@ pub(super) struct View {
     pub(super) offset: Option<String>,
     pub(super) count: Count,
     pub(super) of: Type,
-    /// How many stand in each of the arrays that are looked through, where they are the elements of those.
+    /// Length of each inner array, where the elements are elements of nested arrays.
     pub(super) within: Option<usize>,
 }
 
@@ -131,7 +131,7 @@ impl View {
     }
 }
 
-/// Two indices added, of which the first may be none.
+/// Sum of two indices; the first is optional.
 pub(super) fn sum(offset: Option<&str>, index: &str) -> String {
     match (offset, index) {
         (None | Some("0"), index) => index.to_owned(),
@@ -143,17 +143,17 @@ pub(super) fn sum(offset: Option<&str>, index: &str) -> String {
     }
 }
 
-/// What a pattern is matched with.
+/// Value that a pattern is matched with.
 #[derive(Clone, Debug)]
 pub(super) enum Item {
     Value(Value, Type),
     View(View),
     Tuple(Vec<Item>),
-    /// There is one under a condition.
+    /// An item that exists under a condition.
     Option(String, Box<Item>),
 }
 
-/// What a loop runs over: each kind gives its element at an index, but for filters and what is flattened.
+/// Source of a loop: every kind except filters and flattened iterators gives its element at an index.
 #[derive(Clone)]
 pub(super) enum Iter<'a> {
     /// Elements, as references or as values.

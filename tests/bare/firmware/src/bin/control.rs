@@ -1,5 +1,5 @@
-//! The control step of the SCARA and nothing else, as a product would hold it: what it takes of the flash is what a control step takes.
-//! No arm is simulated, nothing is printed or measured.
+//! The control step of the SCARA alone, as in a product: the size of this program in flash is the cost of a control step. It
+//! simulates no arm, prints nothing and measures nothing.
 #![no_std]
 #![no_main]
 
@@ -13,7 +13,7 @@ fn main() -> ! {
     if let Ok(mut cell) = Cell::new() {
         let mut t = Duration::ZERO;
         loop {
-            // What the encoders say, and what the drives are told.
+            // Readings of the encoders, and commands to the drives.
             let [q, dq] = black_box([[0.0; 4]; 2]);
             cell.measured(State { q: SVector::from(q), dq: SVector::from(dq) });
             let Ok((_, tau)) = cell.control(t) else { break };

@@ -1,5 +1,5 @@
-//! Calls every function of each module of `armgen-bare-functions` at a few states and prints what it costs; finds all postures of two arms and
-//! prints them, besides the lines of the library:
+//! Calls every function of each module of `armgen-bare-functions` at a few states and prints its cost. Finds all postures of two
+//! arms and prints them. Lines in addition to those of the library:
 //!
 //! | line | fields |
 //! |---|---|
