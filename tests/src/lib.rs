@@ -6,7 +6,6 @@
 //! - [`shown`]: what `show --format json` prints, read back;
 //! - [`technical_project`]: every closed form of the SCARA's technical project, and the comparison with `show`;
 //! - [`random`]: random arms and states from a seed;
-//! - [`exported_arms`]: random arms with the numbers of real files;
 //! - [`precision`]: every tolerance, with its reason.
 //!
 //! This crate is also the first downstream project of the generator: its `build.rs` generates every robot that is judged.
@@ -22,7 +21,6 @@ mod answers;
 pub mod compiled;
 pub mod count;
 pub mod emitted;
-pub mod exported_arms;
 pub mod formula;
 pub mod functions;
 pub mod installed;

@@ -39,8 +39,7 @@ impl Random {
         low + (high - low) * (self.next() >> 11) as f64 / (1u64 << 53) as f64
     }
 
-    /// One of several texts, each as likely.
-    pub fn one_of<'a>(&mut self, choices: &[&'a str]) -> &'a str {
+    fn one_of<'a>(&mut self, choices: &[&'a str]) -> &'a str {
         choices[self.whole(0, choices.len() as i64 - 1) as usize]
     }
 }

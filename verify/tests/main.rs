@@ -6,17 +6,10 @@ mod bounds;
 mod certificate_page;
 mod common;
 mod contract;
-mod exported;
-#[allow(dead_code, unreachable_pub)]
-#[path = "../../tests/src/exported_arms.rs"]
-mod exported_arms;
 mod floats;
 mod hostile_modules;
 mod languages;
 mod mutations;
 mod points;
-#[allow(dead_code, unreachable_pub)]
-#[path = "../../tests/src/random.rs"]
-mod random;
 mod robots;
 mod test_kit;
