@@ -8,7 +8,6 @@
 //! | [`wide`] | floats of 256 bits | nothing: they measure rounding errors, and prove none |
 //! | [`twofold`] | pairs of floats in lanes, 106 bits | nothing: the same, for millions of states |
 //! | [`running`] | floats in lanes with their error bounds | nothing: how well floats can compute the equations |
-//! | [`growth`] | degree in each argument, as the text shows it | nothing: that no higher powers are added and taken away again |
 //! | [`degree`] | degree and height of the polynomial that a value is | how unlikely a false equality is |
 //!
 //! Angles are random points of the circle: (s, c) = (2t, 1 - t²)/(1 + t²). Pi, and sine and cosine of angles that have no roots, take
@@ -16,7 +15,6 @@
 
 pub mod degree;
 pub mod dual;
-pub mod growth;
 pub mod plain;
 pub mod prime;
 pub mod roots;

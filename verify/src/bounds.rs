@@ -28,7 +28,7 @@ use crate::equations::arm::formula;
 use crate::float::{Arguments, Lanes, LANES};
 use crate::formula::Formula;
 use crate::program::Program;
-use crate::ranges::{literal_errors, ranges, worst, Domain, Range};
+use crate::ranges::{literal_errors, ranges, worst, Domain};
 use crate::reader::{Constant, Module};
 use crate::residual::{residual, Equations, Residual};
 use crate::stream::Stream;
@@ -99,45 +99,21 @@ pub fn domain(manipulator: &Manipulator, nominal: &[f64]) -> Domain {
     domain
 }
 
-/// A box with all angles and prismatic joints as far to one side as to the other.
-///
-/// What is found in it holds outside as well, up to a factor, of functions that grow with their arguments as the equations do.
-pub fn widened(manipulator: &Manipulator, domain: &Domain, parameters: Parameters) -> Domain {
+/// A box with all angles, prismatic joints as far to one side as to the other, and parameters that are 0 in the description hardly more.
+pub fn symmetric(manipulator: &Manipulator, domain: &Domain) -> Domain {
     let mut wide = domain.clone();
     for (joint, (low, high)) in manipulator.joints.iter().zip(&mut wide.q) {
         let size = if joint.kind == JointKind::Revolute { std::f64::consts::PI } else { low.abs().max(high.abs()) };
         (*low, *high) = (-size, size);
     }
     let largest = domain.pi.iter().fold(0.0f64, |most, (low, high)| most.max(low.abs()).max(high.abs()));
-    let largest = if largest > 0.0 { largest } else { 1.0 };
-    for range in &mut wide.pi {
-        match parameters {
-            Parameters::Any => *range = (-largest, largest),
-            Parameters::Described if *range == (0.0, 0.0) => *range = (-largest * HARDLY, largest * HARDLY),
-            Parameters::Described => {}
-        }
-    }
+    let least = if largest > 0.0 { largest * HARDLY } else { 1.0 };
+    wide.pi.iter_mut().filter(|range| **range == (0.0, 0.0)).for_each(|range| *range = (-least, least));
     wide
-}
-
-/// Which parameters a wide box has.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Parameters {
-    /// All up to the largest of the description.
-    Any,
-    /// Those of the description, and about them; what is 0 there is hardly more, so that B stays positive.
-    Described,
 }
 
 /// As a part of the largest parameter.
 const HARDLY: f64 = 1.0 / (1 << 30) as f64;
-
-/// The errors over a box of the results of a program that does not divide, infinite where a value can leave the scalar; and the largest size of any
-/// value on the way to them.
-pub fn undivided_bounds(program: &Program, values: &[Formula], domain: &Domain, real: Float) -> (Vec<f64>, f64) {
-    let ranges = ranges(program, &literal_errors(program, values, real), domain, None, real);
-    (program.outputs.iter().map(|output| ranges[output.step].error).collect(), worst(ranges.iter().map(Range::size)))
-}
 
 /// A random point of a domain, each entry rounded to the scalar.
 pub fn draw(domain: &Domain, stream: &mut Stream, real: Float) -> Arguments<f64> {

@@ -93,32 +93,12 @@ pub(crate) enum Check {
     LoadSigns,
     /// Floats: the sign of each torque is that of one step.
     SignsOnce,
-    /// Floats: the number 0 is an entry alone.
-    Zeros,
-    /// Floats: functions grow with their arguments as the equations do.
-    Growth,
-    /// Floats: angles are those of frames.
-    Frames,
-    /// Floats: joint variables in sums and as lengths that the equations of the function depend on.
-    Dependence,
-    /// Floats: values on the way are not far above entries and arguments.
-    Headroom,
-    /// Floats: values stay in the scalar.
+    /// Floats: what does not divide has bounds in the box.
     Leaves,
-    /// Floats: error bounds over the box beside those of the equations there.
-    Intervals,
-    /// Floats: error bounds over the box beside those of the equations at states.
+    /// Floats: bounds in the box beside those of the plain program.
     Box,
-    /// Floats: error bounds at states.
+    /// Floats: bounds at states beside those of the plain program.
     States,
-    /// Floats: error bounds at states of what divides.
-    DividedStates,
-    /// Floats: values of what divides stay in the scalar.
-    DividedLeaves,
-    /// Floats: values of what divides are not far above entries and arguments on the way.
-    DividedHeadroom,
-    /// Floats: what divides keeps in single precision what it keeps in double.
-    DividedSingle,
     /// Constants: the name of the robot, before all else.
     Robot,
     /// Constants: they are there.
@@ -137,8 +117,6 @@ pub(crate) enum Check {
     StatedBox,
     /// Comments: facts of functions stand in their documentation alone.
     Facts,
-    /// Functions: their errors as they occur.
-    Measured,
     /// Comments: a text in Python that would be a value.
     Strings,
     /// Comments: operations of a function.

@@ -23,7 +23,6 @@ use crate::equations::parameters::Vector;
 use crate::equations::state::State;
 use crate::formula::{Atoms, Dependent, Formula};
 use crate::number::{Erased, Member, Number, Numbers};
-use crate::powers::{joints_asked, Powers};
 use crate::program::{Limits, Program, Step};
 use crate::reader::{Function, Module};
 use crate::reference::{BaseParameters, Reference, Values, Wanted, BASE_REGRESSOR};
@@ -223,8 +222,6 @@ pub struct Checker {
     exact: Vec<Point<Tower>>,
     /// log2 of the odds of a miss by function, for all points in prime fields together.
     log2_odds: BTreeMap<String, f64>,
-    /// Powers and angles of the equations.
-    powers: Powers,
     base: Option<OwnParameters>,
     sizes: Sizes,
     /// Random bits that nothing has been drawn from.
@@ -339,10 +336,7 @@ impl Checker {
             }
         }
         let sizes = sizes(&manipulator, &vector, base.as_ref());
-        let asked = joints_asked(module.programs().map(|(_, program)| program));
-        let field = points.first().map(|point| &point.arithmetic);
-        let powers = Powers::new(&manipulator, &vector, base.as_ref(), sizes.p, asked, field)?;
-        Ok(Checker { manipulator, vector, claims, points, exact, log2_odds, powers, base, sizes, rest: stream })
+        Ok(Checker { manipulator, vector, claims, points, exact, log2_odds, base, sizes, rest: stream })
     }
 
     /// The arm.
@@ -360,11 +354,6 @@ impl Checker {
         &self.claims
     }
 
-    /// The number of axes that are neither parallel nor perpendicular to the next one.
-    pub fn oblique(&self) -> usize {
-        self.powers.oblique()
-    }
-
     /// The base parameters of its `base_regressor`.
     pub fn base(&self) -> Option<&OwnParameters> {
         self.base.as_ref()
@@ -375,11 +364,6 @@ impl Checker {
         &self.points
     }
 
-    /// The same, to draw from their fields.
-    pub fn points_mut(&mut self) -> &mut [Point<Prime>] {
-        &mut self.points
-    }
-
     /// Random bits for other states, which follow from the module as the points do.
     pub fn rest(&self) -> Stream {
         self.rest.clone()
@@ -388,6 +372,11 @@ impl Checker {
     /// Number of entries of the parameter vector.
     pub fn parameters(&self) -> usize {
         self.sizes.p
+    }
+
+    /// Numbers of joints, parameters, base parameters and rows of the task.
+    pub fn sizes(&self) -> Sizes {
+        self.sizes
     }
 
     fn is_base(&self) -> bool {
@@ -439,11 +428,9 @@ impl Checker {
         let resolved = self.claims.resolve(&program.name, &program.literals, real);
         let (chosen, difference) = self.first_choice_that_holds(program, &resolved);
         let verdict = match difference {
-            None => (self.foreign_divisor(program, &chosen))
-                .or_else(|| self.foreign_sign(program, &chosen))
-                .or_else(|| zero_operand(program))
-                .or_else(|| self.powers.fault(program, &chosen).map(Verdict::Refused))
-                .unwrap_or(Verdict::Equal),
+            None => {
+                (self.foreign_divisor(program, &chosen)).or_else(|| self.foreign_sign(program, &chosen)).unwrap_or(Verdict::Equal)
+            }
             Some((entry, why)) => {
                 let suspect = self.claims.suspect(program, &entry, real);
                 Verdict::Different { entry, why: why + &suspect.map_or_else(String::new, |suspect| format!("; {suspect}")) }
@@ -553,18 +540,6 @@ impl Checker {
             "it divides by what is no pivot of a matrix that its equations invert".into()
         }))
     }
-}
-
-/// A sum or a product with the number 0, in which anything can be hidden that is not a number somewhere.
-fn zero_operand(program: &Program) -> Option<Verdict> {
-    let is_zero = |step: usize| matches!(program.steps[step], Step::Literal(k) if program.literals[k].value == 0.0);
-    let with_zero = program.steps.iter().any(|step| match step {
-        Step::Add(a, b) | Step::Subtract(a, b) | Step::Multiply(a, b) | Step::Product(a, b) | Step::Divide(a, b) => {
-            is_zero(*a) || is_zero(*b)
-        }
-        _ => false,
-    });
-    (with_zero && Check::Zeros.is_made()).then(|| Verdict::Refused("it calculates with the number 0".into()))
 }
 
 /// Degrees and heights of what the equations say, for the odds of a miss.

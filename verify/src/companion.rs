@@ -210,6 +210,12 @@ impl Table {
         Ok(Table { rows, angles, entries, sensitive, real })
     }
 
+    /// The same with bounds by sensitivities for all entries.
+    #[must_use]
+    pub fn sensitive(self) -> Table {
+        Table { sensitive: true, ..self }
+    }
+
     /// Ready to run in lanes.
     pub fn lanes(&self) -> LaneTable {
         match self.real {

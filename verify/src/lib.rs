@@ -65,14 +65,13 @@ pub mod formula;
 #[doc(hidden)]
 pub mod identities;
 #[doc(hidden)]
-pub mod influence;
 mod interval;
 pub mod inverse_kinematics;
 mod marked;
 #[doc(hidden)]
 pub mod number;
 #[doc(hidden)]
-pub mod powers;
+pub mod plain;
 #[doc(hidden)]
 pub mod program;
 #[doc(hidden)]
@@ -95,8 +94,6 @@ pub mod stated;
 #[doc(hidden)]
 pub mod stream;
 pub mod test_kit;
-#[doc(hidden)]
-pub mod yardstick;
 
 use armgen_description::diagnostic::Colour;
 use armgen_description::kinds::Scalar;

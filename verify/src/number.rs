@@ -4,7 +4,6 @@
 //! exact ones and floats with errors, in which the time of a verification is spent, have their own.
 
 use crate::arithmetic::degree::Degree;
-use crate::arithmetic::growth::Growth;
 use crate::arithmetic::wide::Wide;
 use crate::arithmetic::Arithmetic;
 use crate::element::Element;
@@ -96,7 +95,6 @@ macro_rules! members {
 members! {
     Float: f64,
     Wide: Wide,
-    Growth: Growth,
     Degree: Degree,
 }
 

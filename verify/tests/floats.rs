@@ -51,15 +51,14 @@ fn divisors_that_the_equations_do_not_ask_for_are_refused() {
 #[ignore = "wide"]
 fn what_leaves_the_scalar_or_vanishes_is_refused() {
     let right = "10.0 * c2 + 21.526";
-    let why = "a value can leave f64 inside the box";
+    let why = "a value can leave f64 anywhere in the box";
     check(Scalar::F64, &format!("{right} + (1e200 * 1e200 - 1e200 * 1e200)"), why);
-    check(Scalar::F64, &format!("({right}) * (1e-200 * 1e-200) * 1e200 * 1e200"), "on the way to entries");
-    check(Scalar::F64, &format!("({right}) * 1e200 * 1e-200"), "on the way to entries");
+    check(Scalar::F64, &format!("({right}) * (1e-200 * 1e-200) * 1e200 * 1e200"), "rounding can make an error of");
     check(Scalar::F64, &format!("({right}) * 1e160 * 1e160 * 1e-160 * 1e-160"), why);
-    check(Scalar::F32, &format!("({right}) * 1e25 * 1e25 * 1e-25 * 1e-25"), "a value can leave f32 inside the box");
-    check(Scalar::F32, &format!("({right}) * 1e-30 * 1e-30 * 1e30 * 1e30"), "on the way to entries");
+    check(Scalar::F32, &format!("({right}) * 1e25 * 1e25 * 1e-25 * 1e-25"), "a value can leave f32 anywhere in the box");
+    check(Scalar::F32, &format!("({right}) * 1e-30 * 1e-30 * 1e30 * 1e30"), "rounding can make an error of");
     check(Scalar::F32, &format!("({right}) * 1e-20 * 1e-20 * 1e20 * 1e20"), "rounding can make an error of");
-    check(Scalar::F64, &format!("({right}) * 1e-160 * 1e-160 * 1e160 * 1e160"), "on the way to entries");
+    check(Scalar::F64, &format!("({right}) * 1e-160 * 1e-160 * 1e160 * 1e160"), "rounding can make an error of");
 }
 
 #[test]
@@ -70,17 +69,14 @@ fn what_loses_its_digits_is_refused() {
     // With a variable there is nothing for an interval to see cancel.
     for scalar in [Scalar::F64, Scalar::F32] {
         check(scalar, &format!("{right} + (1000000000.0 * c2 - 1000000000.0 * c2)"), why);
-        check(scalar, &format!("{right} + (1000000000.0 * q[2] - 1000000000.0 * q[2])"), "it takes `q[2]` to the power 1");
+        check(scalar, &format!("{right} + (1000000000.0 * q[2] - 1000000000.0 * q[2])"), why);
     }
-    // Where no state is tried, by its degree: (1 - (c2 - 1/5)²)^(2^12) is almost 0 but within a fiftieth of 1/5.
+    // Where no state is tried, by intervals: (1 - (c2 - 1/5)²)^(2^12) is almost 0 but within a fiftieth of 1/5.
     let squares: String = (0..12).map(|k| format!("let t{} = t{1} * t{1}; ", 901 + k, 900 + k)).collect();
     let spike =
         format!("let t900 = 1.0 - (c2 - 0.2) * (c2 - 0.2); {squares} let t999 = 1e17 * t912;\n    [\n        [t999 - t999 + ");
     let fault = fault(Scalar::F64, B, "[\n        [", &spike);
-    assert!(
-        fault.starts_with("inertia_matrix: ") && fault.contains("it takes sine and cosine of `q[1]` to the power"),
-        "{fault}"
-    );
+    assert!(fault.starts_with("inertia_matrix: ") && fault.contains("in the box"), "{fault}");
 }
 
 #[test]
@@ -95,9 +91,8 @@ fn forward_dynamics_are_judged_as_well() {
     forward(Scalar::F64, "t29 + 1e17 - 1e17", why);
     forward(Scalar::F64, "t29 + (1e17 * c2 - 1e17 * c2)", why);
     forward(Scalar::F64, "t29 + (1e200 * 1e200 - 1e200 * 1e200)", "a value can leave f64");
-    forward(Scalar::F32, "t29 * 1e25 * 1e25 * 1e-25 * 1e-25", "a value leaves f32");
-    forward(Scalar::F32, "t29 * 1e30 * 1e-30", "on the way to entries");
-    forward(Scalar::F32, "t29 * 1e-25 * 1e-25 * 1e25 * 1e25", "rounding makes an error of");
+    forward(Scalar::F32, "t29 * 1e25 * 1e25 * 1e-25 * 1e-25", "a value can leave f32");
+    forward(Scalar::F32, "t29 * 1e-25 * 1e-25 * 1e25 * 1e25", why);
 }
 
 /// A literal has the exact value that stands at its place, and not another one that rounds to the same float.

@@ -337,8 +337,7 @@ fn functions(tally: &mut Tally, scara: &Given) {
     let high = edited(module, B, T1, &format!("{T1}    let t900 = 0.25 * c2 - 0.25 * c2; {squares}\n"));
     let high = edited(&high, B, "t1, -0.25", "t1, t1100 - 0.25");
     let said = "the documentation says `Cost: ";
-    let growth = (Growth, "inertia_matrix: in [0][2] it takes sine and cosine of `q[1]` to the power 65535");
-    let layers = [growth, (Odds, "inertia_matrix: the odds of a miss are"), (Cost, said)];
+    let layers = [(Odds, "inertia_matrix: the odds of a miss are"), (Cost, said)];
     tally.text(scara, "a high degree", &high, &layers);
 }
 
@@ -348,48 +347,28 @@ fn floats(tally: &mut Tally, scara: &Given) {
     let entry = |tally: &mut Tally, given: &Given, text: &str, layers: &[Layer]| {
         tally.module(given, B, B11, &text.replace("B11", B11), &[layers, &comments].concat());
     };
-    let headroom = (Headroom, "on the way to entries of up to");
-    let leaves = (Leaves, "inertia_matrix: a value can leave f64 inside the box");
-    let (the_box, intervals) = ((Box, "anywhere in the box"), (Intervals, "anywhere in the box"));
-    let states = (States, "in f64, at a state of the box");
-    let measured = (Measured, "in f64, at a state within the limits");
-    let foreign = (Dependence, "inertia_matrix: it takes `q[2]`, which its equations do not depend on");
+    let leaves = (Leaves, "inertia_matrix: a value can leave f64 anywhere in the box");
+    let (in_box, states) = ((Box, " in the box"), (States, "at a state of the box"));
     let divides = (Divisors, "it divides, which its equations do not ask for");
-    entry(tally, scara, "(B11) * ((q[2] - 0.2) / (q[2] - 0.2))", &[divides, foreign]);
-    entry(tally, scara, "B11 + (1e200 * 1e200 - 1e200 * 1e200)", &[leaves, headroom, the_box, intervals, states]);
-    entry(tally, scara, "B11 + 1e300 - 1e300", &[headroom, the_box, intervals, states]);
-    entry(tally, scara, "(B11) * 1e300 * 1e-300", &[headroom]);
-    entry(tally, scara, "(B11) * (1e-200 * 1e-200) * 1e200 * 1e200", &[headroom, the_box, intervals, states]);
-    entry(tally, scara, "B11 - 4.0 + (1e17 + 4.0 - 1e17)", &[the_box, intervals, states, measured]);
-    entry(tally, scara, "B11 + 100000.0 - 100000.0", &[states, measured]);
-    // Next to a small entry: the function's bound comes from another entry.
-    let (small, lost) = ("[5e-5 * dq[0],", "[5e-5 * dq[0] + 0.02 - 0.02,");
-    let of_friction = [intervals, states, (Cost, said)];
-    tally.module(scara, "pub fn friction(", small, lost, &of_friction);
-    // Finite in the box, but not a number at q[2] = 2.
-    let powers: String = (901..911).map(|k| format!("let t{k} = t{0} * t{0}; ", k - 1)).collect();
-    let grown = edited(&scara.module, B, T1, &format!("{T1}    let t900 = 0.9 * q[2]; {powers}\n"));
-    let grown = edited(&grown, B, B11, &format!("{B11} + t910 - t910"));
-    let layers = [(Growth, "inertia_matrix: in [0][0] it takes `q[2]` to the power 1024 where its equations have 0"), foreign];
-    tally.text(scara, "a high power", &grown, &[&layers[..], &comments].concat());
-    let c2 = "let (_, c2) = sin_cos(q[1]);";
-    let as_differences = |tally: &mut Tally, first: &str, second: &str, layers: &[Layer]| {
-        let waves = format!("let (s8, c8) = sin_cos({first}); let (s9, c9) = sin_cos({second}); let c2 = c8 * c9 + s8 * s9;");
-        tally.module(scara, B, c2, &waves, &[layers, &comments].concat());
-    };
-    let sums = (Dependence, "inertia_matrix: it has an angle with `q[0]` and others, which its equations do not depend on");
-    as_differences(tally, "q[0] + q[1]", "q[0]", &[sums]);
-    let frames = (Frames, "inertia_matrix: it has an angle of `q[1]`, `q[3]`, by which no frame is turned");
-    as_differences(tally, "q[1] + q[3]", "q[3]", &[frames, (Dependence, "it has an angle with `q[3]` and others")]);
-    entry(tally, scara, "B11 + 0.0 * c2", &[(Zeros, "inertia_matrix: it calculates with the number 0")]);
+    entry(tally, scara, "(B11) * ((q[2] - 0.2) / (q[2] - 0.2))", &[divides]);
+    let nowhere = (States, "inertia_matrix: a value can leave f64 at a state of the box");
+    entry(tally, scara, "B11 + (1e200 * 1e200 - 1e200 * 1e200)", &[leaves, in_box, nowhere]);
+    entry(tally, scara, "B11 + 1e300 - 1e300", &[in_box, states]);
+    entry(tally, scara, "(B11) * (1e-200 * 1e-200) * 1e200 * 1e200", &[in_box, states]);
+    entry(tally, scara, "B11 - 4.0 + (1e17 + 4.0 - 1e17)", &[in_box, states]);
+    entry(tally, scara, "B11 + 100000.0 - 100000.0", &[in_box, states]);
+    // Almost 0 but where c2 is near 1/5: (1 - (c2 - 1/5)²)^(2^40). No state is near enough.
+    let squares: String = (0..40).map(|k| format!("let t{} = t{1} * t{1}; ", 901 + k, 900 + k)).collect();
+    let peak = format!("let t900 = 1.0 - (c2 - 0.2) * (c2 - 0.2); {squares} let t999 = 1e17 * t940;");
+    let peak = edited(&scara.module, B, T1, &format!("{T1}    {peak}\n"));
+    tally.text(scara, "a peak", &edited(&peak, B, B11, &format!("{B11} + t999 - t999")), &[&[in_box][..], &comments].concat());
     let shortest = (Shortest, "is not the shortest decimal of a float");
     let rounded = "B11 - 4.0 + (100000000000000004.0 - 100000000000000000.0)";
-    entry(tally, scara, rounded, &[shortest, the_box, intervals, states, measured]);
+    entry(tally, scara, rounded, &[shortest, in_box, states]);
     let forward = |tally: &mut Tally, given: &Given, text: &str, layers: &[Layer]| {
         tally.module(given, "pub fn forward_dynamics(", "[t29,", &format!("[{text},"), &[layers, &comments].concat());
     };
-    let divided = (DividedStates, "forward_dynamics: rounding can make an error of");
-    forward(tally, scara, "t29 + 1e17 - 1e17", &[divided, measured]);
+    forward(tally, scara, "t29 + 1e17 - 1e17", &[(States, "forward_dynamics: rounding can make an error of")]);
     let reciprocal = |tally: &mut Tally, text: &str, layers: &[Layer]| {
         tally.module(scara, "pub fn forward_dynamics(", "(1.0 / t25)", text, layers);
     };
@@ -397,14 +376,9 @@ fn floats(tally: &mut Tally, scara: &Given) {
     let scaled = "(9.313225746154785e-10 / (9.313225746154785e-10 * t25))";
     reciprocal(tally, scaled, &[&foreign[..], &comments].concat());
     let single = given("scara", &Options { scalar: Scalar::F32, ..Options::default() });
-    let headroom = (DividedHeadroom, "on the way to entries of up to");
-    let of_single = (DividedSingle, "forward_dynamics: rounding makes an error of");
-    let leaves = (DividedLeaves, "forward_dynamics: a value leaves f32");
-    forward(tally, &single, "t29 * 1e25 * 1e25 * 1e-25 * 1e-25", &[leaves, headroom, of_single]);
-    // Two more roundings leave the two digits of the stated bound unchanged.
-    let scaled = "[t29 * 1e30 * 1e-30,";
-    tally.module(&single, "pub fn forward_dynamics(", "[t29,", scaled, &[headroom, (Cost, said)]);
-    forward(tally, &single, "t29 * 1e-25 * 1e-25 * 1e25 * 1e25", &[of_single]);
+    let leaves = (States, "forward_dynamics: a value can leave f32 at a state of the box");
+    forward(tally, &single, "t29 * 1e25 * 1e25 * 1e-25 * 1e-25", &[leaves]);
+    forward(tally, &single, "t29 * 1e-25 * 1e-25 * 1e25 * 1e25", &[(States, "forward_dynamics: rounding can make an error of")]);
 }
 
 /// Signs of values that are 0 over the reals, and of a torque in two forms.

@@ -2,7 +2,7 @@
 //!
 //! The program is that of [`reference`](mod@crate::reference), in double precision. At states it is run in floats with running errors
 //! ([`running`](mod@crate::arithmetic::running)); over a box in intervals with the largest errors of their values, by the rules of
-//! [`mod@crate::ranges`]. What divides by an interval that 0 lies in has no bound there.
+//! [`mod@crate::ranges`]. What divides by an interval that 0 lies in has no bound there. Arguments are rounded once: no one has them better.
 
 use std::collections::BTreeMap;
 
@@ -21,9 +21,18 @@ use crate::formula::Formula;
 use crate::ranges::{Domain, Range};
 use crate::reference::{BaseParameters, Values, Wanted};
 
-/// An arm whose equations are measured.
+/// What a plain program makes of an entry.
+#[derive(Clone, Copy, Debug)]
+pub struct Entry {
+    /// The bound of its error.
+    pub error: f64,
+    /// The size of its value, the largest in a box.
+    pub size: f64,
+}
+
+/// The plain program of the equations of an arm.
 #[derive(Clone, Copy)]
-pub struct Subject<'a> {
+pub struct Plain<'a> {
     /// The arm.
     pub manipulator: &'a Manipulator,
     /// What its parameter vector is.
@@ -32,7 +41,7 @@ pub struct Subject<'a> {
     pub base: Option<&'a OwnParameters>,
 }
 
-impl Subject<'_> {
+impl Plain<'_> {
     /// All functions in an arithmetic that gives `pi` where it draws.
     fn values<K: Arithmetic>(&self, numbers: &mut K, state: State<K::Element>) -> Option<Values<K::Element>> {
         let wanted = Wanted { base: BaseParameters::Kept, pivots: false };
@@ -51,13 +60,15 @@ impl Subject<'_> {
         matches!(self.vector, Vector::Base(..))
     }
 
-    /// By function and entry: at each state the largest error, and the value.
-    pub fn at_states(&self, states: &[Arguments<f64>; LANES]) -> BTreeMap<String, Vec<[(f64, f64); LANES]>> {
-        let arguments = Arguments::gather(states, Running::exact);
+    /// By function: at each state, each entry.
+    pub fn at_states(&self, states: &[Arguments<f64>; LANES]) -> BTreeMap<String, Vec<Vec<Entry>>> {
+        let arguments = Arguments::gather(states, |entry| Running::rounded(entry, 1.0));
         let circle = |q: &Running| {
             let both = q.value.map(libm::sincos);
-            // One unit in the last place each.
-            (Running::rounded(both.map(|(sine, _)| sine), 2.0), Running::rounded(both.map(|(_, cosine)| cosine), 2.0))
+            // One unit in the last place each, and what the angle is off by.
+            let wave =
+                |value| Running { error: std::array::from_fn(|k| Running::rounded(value, 2.0).error[k] + q.error[k]), value };
+            (wave(both.map(|(sine, _)| sine)), wave(both.map(|(_, cosine)| cosine)))
         };
         let sign = |rate: &Running| Running::exact(rate.value.map(|x| if x == 0.0 { 0.0 } else { x.signum() }));
         let (angles, signs) = (arguments.q.iter().map(circle).collect(), arguments.dq.iter().map(sign).collect());
@@ -77,29 +88,36 @@ impl Subject<'_> {
         if self.is_base() {
             numbers.given = std::mem::take(&mut state.pi).into();
         }
-        let of = |entry: &Running| std::array::from_fn(|k| (entry.error[k], entry.value[k]));
+        let at = |entries: &[Running], k: usize| {
+            let entry = |entry: &Running| Entry { error: entry.error[k], size: entry.value[k].abs() };
+            entries.iter().map(entry).collect::<Vec<Entry>>()
+        };
         let values = self.values(&mut numbers, state).unwrap_or_default();
-        values.into_iter().map(|(name, entries)| (name, entries.iter().map(of).collect())).collect()
+        values.into_iter().map(|(name, entries)| (name, (0..LANES).map(|k| at(&entries, k)).collect())).collect()
     }
 
-    /// By function and entry: the largest error over a box with all angles.
-    pub fn over(&self, domain: &Domain) -> BTreeMap<String, Vec<f64>> {
-        let range = |(low, high): (f64, f64)| Range { low, high, error: 0.0 };
+    /// By function: each entry in a box with all angles.
+    pub fn in_box(&self, domain: &Domain) -> BTreeMap<String, Vec<Entry>> {
+        let unit = Float::F64.unit();
+        let range = |(low, high): (f64, f64)| Range { low, high, error: unit * low.abs().max(high.abs()) };
         let arguments = domain.map(range);
-        let circle = Range { low: -1.0, high: 1.0, error: 2.0 * Float::F64.unit() };
-        let (angles, signs) = (vec![(circle, circle); arguments.q.len()], vec![range((-1.0, 1.0)); arguments.q.len()]);
+        let circle = |q: &Range| Range { low: -1.0, high: 1.0, error: 2.0 * unit + q.error };
+        let angles = arguments.q.iter().map(|q| (circle(q), circle(q))).collect();
+        let signs = vec![Range { low: -1.0, high: 1.0, error: 0.0 }; arguments.q.len()];
         let stribeck = arguments.dq.iter().zip(self.stribeck_velocities());
         let stribeck = stribeck.map(|(rate, velocity)| {
             velocity.map_or(range((0.0, 0.0)), |velocity| Range::stribeck((rate.low, rate.high), velocity, Float::F64))
         });
         let stribeck = stribeck.collect();
-        let mut state = State { stribeck, ..State::of(arguments, angles, signs, [0.0, 1.0].map(|x| range((x, x)))) };
+        let mut state =
+            State { stribeck, ..State::of(arguments, angles, signs, [0.0, 1.0].map(|x| Range { low: x, high: x, error: 0.0 })) };
         let mut numbers = Ranges::default();
         if self.is_base() {
             numbers.given = std::mem::take(&mut state.pi).into_iter();
         }
         let values = self.values(&mut numbers, state).unwrap_or_default();
-        values.into_iter().map(|(name, entries)| (name, entries.iter().map(|entry| entry.error).collect())).collect()
+        let entry = |entry: &Range| Entry { error: entry.error, size: entry.size() };
+        values.into_iter().map(|(name, entries)| (name, entries.iter().map(entry).collect())).collect()
     }
 }
 
