@@ -84,9 +84,9 @@ fn angle(random: &mut Random) -> String {
     let right = RIGHT[random.whole(0, 5) as usize];
     match random.whole(1, 100) {
         ..=25 => random.one_of(&["0", "pi/2", "-pi/2", "pi", "pi/4", "-pi/3"]).to_owned(),
-        ..=50 => format!("{right:.*}", [4, 5, 6, 7, 8, 10][random.whole(0, 5) as usize]),
-        ..=60 => right.to_string(),
-        ..=70 => {
+        26..=50 => format!("{right:.*}", [4, 5, 6, 7, 8, 10][random.whole(0, 5) as usize]),
+        51..=60 => right.to_string(),
+        61..=70 => {
             let off = sign(random) * 10f64.powf(random.real(-8.0, -2.0));
             digits(right + off, [6, 9, 15][random.whole(0, 2) as usize])
         }
@@ -97,8 +97,8 @@ fn angle(random: &mut Random) -> String {
 fn length(random: &mut Random) -> String {
     match random.whole(1, 100) {
         ..=30 => "0".to_owned(),
-        ..=60 => format!("{:.*}", random.whole(2, 4) as usize, random.real(-0.6, 0.6)),
-        ..=80 => digits(random.real(-0.6, 0.6), [6, 9, 12][random.whole(0, 2) as usize]),
+        31..=60 => format!("{:.*}", random.whole(2, 4) as usize, random.real(-0.6, 0.6)),
+        61..=80 => digits(random.real(-0.6, 0.6), [6, 9, 12][random.whole(0, 2) as usize]),
         _ => digits(sign(random) * 10f64.powf(random.real(-9.0, -4.0)), 6),
     }
 }
@@ -106,14 +106,14 @@ fn length(random: &mut Random) -> String {
 fn axis(random: &mut Random) -> String {
     match random.whole(1, 100) {
         ..=50 => random.one_of(&["[0, 0, 1]", "[0, 1, 0]", "[1, 0, 0]", "[0, 0, -1]", "[0, -1, 0]"]).to_owned(),
-        ..=75 => {
+        51..=75 => {
             let (main, mut axis) = (random.whole(0, 2) as usize, ["0"; 3]);
             axis[main] = random.one_of(&["1", "-1"]);
             axis[(main + random.whole(1, 2) as usize) % 3] =
                 random.one_of(&["-4.37114e-08", "4.37113883e-08", "1e-06", "-1.22465e-16", "6.12323e-17", "0.000123"]);
             format!("[{}]", axis.join(", "))
         }
-        ..=90 => {
+        76..=90 => {
             let component = [(); 3].map(|()| format!("{:.3}", sign(random) * random.real(0.1, 1.0)));
             format!("[{}]", component.join(", "))
         }

@@ -30,7 +30,7 @@ fn arms_with_numbers_of_real_files_have_an_answer() {
 #[test]
 #[ignore = "wide"]
 fn many_arms_with_numbers_of_real_files_have_an_answer() {
-    answered(100..140, (2, 6), Before::Nothing);
-    answered(100..110, (2, 6), Before::Rail);
-    answered(100..110, (2, 6), Before::Mobile);
+    answered(100..124, (2, 4), Before::Nothing);
+    answered(100..106, (2, 3), Before::Rail);
+    answered(100..106, (2, 3), Before::Mobile);
 }

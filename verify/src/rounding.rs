@@ -70,12 +70,12 @@ impl Sort {
             Sort::Special => {
                 let mut state = corner(domain, stream, real);
                 // A little beside it.
-                let dust = if lane % 2 == 0 { 0.0 } else { 2f64.powi(-30) };
+                let dust = if lane.is_multiple_of(2) { 0.0 } else { 2f64.powi(-30) };
                 state.q.iter_mut().for_each(|q| *q = real.rounded(*q + dust * (*q + 1.0)));
                 state
             }
             Sort::Slow => {
-                let factor = if lane % 2 == 0 { 0.0 } else { 2f64.powi(-10) };
+                let factor = if lane.is_multiple_of(2) { 0.0 } else { 2f64.powi(-10) };
                 let Arguments { q, tau, pi, .. } = draw(domain, stream, real);
                 let slow = draw(domain, stream, real).map(|rate| factor * rate);
                 Arguments { q, tau, pi, ..slow }
@@ -156,7 +156,9 @@ impl<'a> Trial<'a> {
         }
         let exceeds = |compared: &Compared| {
             let check = if compared.in_box { Check::Box } else { Check::States };
-            check.is_made() && !(compared.bound <= compared.allowed)
+            // A bound that is not a number fits nowhere.
+            let fits = compared.bound <= compared.allowed;
+            check.is_made() && !fits
         };
         let in_box = self.in_box(program, values).into_iter().find(exceeds);
         let at_states = || self.scalars().flat_map(|real| self.at_states(program, values, real, false)).find(exceeds);
