@@ -191,7 +191,9 @@ impl<'a> Trial<'a> {
     /// What is allowed of an entry in a scalar, its bound and the size of the largest of its kind being those of the plain program.
     fn allowed(&self, real: Float, error: f64, size: f64) -> f64 {
         let double = Float::F64.unit();
-        self.factor * (real.unit() / double * (error + double * size) + real.smallest_normal())
+        // Next to zero, errors of underflow decide. Division by a pivot enlarges them, so that the floor is where a product loses digits.
+        let underflow = real.smallest_normal() / real.unit();
+        self.factor * (real.unit() / double * (error + double * size) + underflow)
     }
 
     fn in_box(&self, program: &Program, values: &[Formula]) -> Vec<Compared> {
