@@ -9,7 +9,7 @@
 //! ```
 //!
 //! Entries of a kind belong to one part of the result and have one unit: torques of joints that turn, forces of joints that slide, metres,
-//! rotations ([`kinds`]). The rule is applied
+//! rotations (`kinds`). The rule is applied
 //!
 //! ```text
 //! in the box   to functions without a division: e and E by intervals, T the largest size there. All angles, positions as far to
