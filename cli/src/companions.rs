@@ -1,4 +1,4 @@
-//! Files that `armgen generate` writes beside a module: what they are called, what they are made from, and how one is told from a module.
+//! Files that `armgen generate` writes next to a module: their names, their origin, and how they differ from a module.
 
 use std::fs::File;
 use std::io::Read;
@@ -7,7 +7,7 @@ use std::path::{Path, PathBuf};
 use armgen_codegen::emit::{Language, Origin};
 use armgen_codegen::source::Source;
 
-/// A file beside a module: what stands before and behind a name in its own, and in that of what it goes with.
+/// A companion of a module: the texts before and after a common name in its own file name, and in that of its module.
 struct Companion {
     language: Language,
     file: [&'static str; 2],
@@ -43,7 +43,7 @@ const COMPANIONS: [Companion; 19] = [
     of(Language::Matlab, ["", "Test.m"], ["+", ""], "--tests"),
 ];
 
-/// What a text holds that is no module: bounds, traits, calls from C, calls of a library, declarations, tests.
+/// Signs of a text that is not a module: bounds, traits, calls from C, calls of a library, declarations, tests.
 const NO_MODULE: [&str; 7] = [
     "\n// Running error bounds of the functions of a robot: ",
     "impl armgen_runtime::",
@@ -54,7 +54,7 @@ const NO_MODULE: [&str; 7] = [
     "at the poses of random postures the posture itself is found",
 ];
 
-/// The name within a file's between what stands before and behind it.
+/// The part of a file name between two texts.
 fn between<'n>(name: &'n str, [before, behind]: [&str; 2]) -> Option<&'n str> {
     name.strip_prefix(before)?.strip_suffix(behind).filter(|name| !name.is_empty())
 }
@@ -63,7 +63,8 @@ fn name_of(path: &Path) -> &str {
     path.file_name().and_then(|name| name.to_str()).unwrap_or_default()
 }
 
-/// What a companion goes with, by the names of both; a text that is a module, or one of inverse kinematics, is none.
+/// The module of a companion, by the names of both, or `a module` if the names do not show it. `None` for a module, also of inverse
+/// kinematics.
 pub(crate) fn goes_with(file: &Path, text: &str) -> Option<String> {
     let name = name_of(file);
     let is_none = NO_MODULE.iter().any(|mark| text.contains(mark));
@@ -75,7 +76,7 @@ pub(crate) fn goes_with(file: &Path, text: &str) -> Option<String> {
     with.or_else(|| is_none.then(|| "a module".to_owned()))
 }
 
-/// The files that may stand beside a module, each with what asks for it.
+/// The possible companions of a module, each with its option.
 pub(crate) fn beside(module: &Path, language: Language) -> Vec<(PathBuf, &'static str)> {
     let name = name_of(module);
     // What goes with inverse kinematics stands beside the module as well.
@@ -120,8 +121,8 @@ pub(crate) fn why_different(text: &str, description: &Source) -> String {
     }
 }
 
-/// Whether a file is there that armgen has made, beside a module of a language, from another description than that of a hash, or does not say
-/// which. A header that a module in Rust does not call for, or one in C does not, is a module by itself.
+/// Whether a file exists that armgen made for a module of a language, but from another description than that of `hash`, or without naming
+/// it. A header that declares functions of a library belongs to a module in Rust. Any other header is a module in C by itself.
 pub(crate) fn is_of_another(file: &Path, language: Language, hash: &str) -> bool {
     let mut head = Vec::new();
     let read = File::open(file).and_then(|file| file.take(2048).read_to_end(&mut head));

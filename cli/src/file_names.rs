@@ -1,4 +1,4 @@
-//! What the file of a module may be called. In its language the name of the file is that of the module, and not every name can be one.
+//! Valid names for the file of a module. In its language the file names the module, and not every name is valid.
 
 use std::path::Path;
 
@@ -10,7 +10,7 @@ const PYTHON: [&str; 35] = [
     "except", "finally", "for", "from", "global", "if", "import", "in", "is", "lambda", "nonlocal", "not", "or", "pass", "raise",
     "return", "try", "while", "with", "yield",
 ];
-/// What the module, its test, its library and the arrays of its callers import: a file of this name would be found first.
+/// Names that the module, its test, its library and the arrays of its callers import: Python would find a file of this name first.
 const IMPORTED: [&str; 18] = [
     "ctypes",
     "cupy",

@@ -1,4 +1,4 @@
-//! Descriptions from files: read, checked, and what is wrong with them on standard error.
+//! Descriptions from files: read and checked, with faults on standard error.
 
 use std::path::Path;
 
@@ -29,7 +29,7 @@ pub(crate) fn description(path: &Path) -> Result<Source, u8> {
     Ok(source)
 }
 
-/// The text of a log, which may well be longer than what is read: whoever has it is told what to do.
+/// The text of a log. A log may be longer than the limit; the message then has a remedy.
 pub(crate) fn log(path: &Path) -> Result<Source, u8> {
     let samples = armgen_page::SAMPLES;
     let remedy = format!("a page keeps {samples} samples at most, so give it the first line and, of the others, every tenth");
@@ -46,7 +46,7 @@ pub(crate) fn written(path: &Path) -> Result<Source, u8> {
     Ok(Source::new(name, text))
 }
 
-/// The files of a package of MATLAB as one text. Whatever else stands in the folder could take the place of a function.
+/// The files of a package of MATLAB as one text. Other files in the folder could take the place of a function.
 pub(crate) fn package(folder: &Path) -> Result<Source, u8> {
     let name = folder.display().to_string();
     let unreadable = |error: std::io::Error| {
@@ -89,20 +89,20 @@ pub(crate) fn package(folder: &Path) -> Result<Source, u8> {
 /// How much of a valid file's warnings goes to standard error.
 #[derive(Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Warnings {
-    /// All of them, as they stand.
+    /// All of them.
     Shown,
-    /// One line that says how many there are.
+    /// One line with their number.
     Counted,
 }
 
-/// The valid arm of a file; what is wrong with it goes to standard error.
+/// The valid arm of a file; faults go to standard error.
 pub(crate) fn manipulator(source: &Source, scalar: Scalar, warnings: Warnings) -> Result<(Manipulator, Diagnostics), u8> {
     let (valid, diagnostics) = validate::read_for(source, scalar);
     let (manipulator, _) = report_or_exit_code(source, valid, &diagnostics, warnings)?;
     Ok((manipulator, diagnostics))
 }
 
-/// What a file gave, or the exit code; what is wrong with the file goes to standard error.
+/// The result of reading a file, or the exit code; faults go to standard error.
 pub(crate) fn report_or_exit_code<T>(
     source: &Source,
     given: Option<T>,
@@ -140,7 +140,7 @@ pub(crate) fn model(path: &Path) -> Result<Model, u8> {
     Ok(Model::new(manipulator))
 }
 
-/// The functions of the names, all if there are none; what is wrong with a name goes to standard error.
+/// The functions with these names, all without names; faults go to standard error.
 pub(crate) fn selection(names: &[String]) -> Option<Selection> {
     if names.is_empty() {
         return Some(Selection::ALL);

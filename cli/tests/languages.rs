@@ -1,4 +1,4 @@
-//! `armgen generate --language` as its users run it: what is written, what is verified, and what is refused with a way out.
+//! `armgen generate --language` as its users run it: written files, verified files, and refusals with a remedy.
 
 use std::fs;
 use std::path::PathBuf;
@@ -18,7 +18,7 @@ pub(crate) fn folder(name: &str) -> PathBuf {
     folder
 }
 
-/// Runs the program; what it said on standard error.
+/// Runs the program; returns its standard error.
 #[track_caller]
 pub(crate) fn check(folder: &PathBuf, arguments: &[&str], code: i32) -> String {
     let output = Command::new(env!("CARGO_BIN_EXE_armgen")).current_dir(folder).args(arguments).output().expect("it runs");

@@ -1,4 +1,4 @@
-//! Small types that all stages share: what a number, a joint and a row of the task can be.
+//! Small types that all stages share: kinds of numbers, joints, targets and rows of the task.
 
 use armgen_algebra::exact::Number;
 pub use armgen_algebra::exact::ParameterId;
@@ -37,7 +37,7 @@ pub enum JointKind {
     Prismatic,
 }
 
-/// What inverse kinematics is asked to reach.
+/// The target of inverse kinematics.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Target {
     /// The pose of the end effector.
@@ -51,7 +51,7 @@ pub enum Target {
 }
 
 impl Target {
-    /// The first column of T that it fixes, with those behind it.
+    /// The first column of T that the target fixes; it fixes all later columns, too.
     pub fn first_column(self) -> usize {
         match self {
             Target::Pose | Target::Planar => 0,

@@ -5,7 +5,7 @@ use crate::kinds::Scalar;
 /// A language.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Language {
-    /// Rust, the module with everything that can stand beside it.
+    /// Rust: the module with all its companion files.
     #[default]
     Rust,
     /// C99 and C++11: one header.

@@ -1,4 +1,4 @@
-//! From the text of a robot's description to an arm as data: what the generator and the checker share.
+//! From the text of a robot's description to an arm as data: the part that generator and checker share.
 //!
 //! | stage | from | to | can fail |
 //! |---|---|---|---|

@@ -27,11 +27,11 @@ pub struct LinkId(pub u32);
 pub struct Postures {
     /// The target; without it, what `task` says.
     pub target: Option<crate::kinds::Target>,
-    /// What is given besides for a redundant arm, of one degree of redundancy.
+    /// The value that the caller also gives for an arm with one degree of redundancy.
     pub given: Option<GivenBeside>,
 }
 
-/// What is given beside the pose of a redundant arm, of one degree of redundancy.
+/// The value that the caller gives with the pose for an arm with one degree of redundancy.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum GivenBeside {
     /// The value of a joint.
@@ -49,7 +49,7 @@ pub struct Manipulator {
     pub parameters: Vec<Parameter>,
     /// Acceleration of gravity in the base frame, m/s².
     pub gravity: [Polynomial; 3],
-    /// Joints from base to tip; a parent always stands before its children.
+    /// Joints from base to tip; a parent always precedes its children.
     pub joints: Vec<Joint>,
     /// The link that carries the end effector.
     pub tip: LinkId,
@@ -59,7 +59,7 @@ pub struct Manipulator {
     pub payload: Option<PlacedBody>,
     /// Rows of the operational space, in the order of the file.
     pub task: Vec<TaskRow>,
-    /// What the regressor's columns are.
+    /// The choice of the regressor's columns.
     pub regressor: RegressorChoice,
     /// What `inverse_kinematics` of the description asks for.
     pub inverse_kinematics: Postures,
@@ -83,7 +83,7 @@ pub struct Joint {
     pub kind: JointKind,
     /// The link that carries this joint; `None` for the base.
     pub parent: Option<LinkId>,
-    /// What the file says of where the link is.
+    /// The place of the link, as the file gives it.
     pub row: Row,
     /// The joint frame at q = 0 in the parent's *joint frame* (the base frame if there is no parent).
     pub placement: Placement,
@@ -135,11 +135,11 @@ pub struct Spring {
 /// `axis`, or the translation by q along it.
 #[derive(Clone, Debug)]
 pub struct Row {
-    /// What stands before the motion.
+    /// The pose before the motion.
     pub before: Pose,
     /// Unit vector of the joint axis, in the frame after `before`, through its origin.
     pub axis: [Number; 3],
-    /// What stands after the motion.
+    /// The pose after the motion.
     pub after: Pose,
 }
 

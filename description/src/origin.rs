@@ -14,7 +14,7 @@ pub struct Origin {
 }
 
 impl Origin {
-    /// Of a description: its file name, not its folder, so that the output is the same everywhere.
+    /// The origin of a description: its file name without the folder, so that the output is the same everywhere.
     pub fn of(source: &Source) -> Origin {
         let name = source.name().rsplit(['/', '\\']).next().unwrap_or_default();
         // In a comment, which a line break or a mark of writing direction would end or disguise, `*/` in C, a backslash or `coding=` in Python.
@@ -27,7 +27,7 @@ impl Origin {
         Origin { file, hash: digest.iter().take(8).map(|byte| format!("{byte:02x}")).collect() }
     }
 
-    /// Version of armgen, file and hash: what a file says of where it is from.
+    /// Version of armgen, file and hash: the origin as an emitted file states it.
     pub fn made_by(&self) -> String {
         format!("armgen {} from {} (input {})", env!("CARGO_PKG_VERSION"), self.file, self.hash)
     }

@@ -1,4 +1,4 @@
-//! Work at the same time: the same for many items, or two works. Results stand in the order of the items, so that nothing depends on threads.
+//! Work at the same time: the same for many items, or two works. Results have the order of the items, so that nothing depends on threads.
 
 use std::sync::atomic::{AtomicUsize, Ordering::Relaxed};
 use std::sync::OnceLock;
@@ -34,7 +34,7 @@ fn for_each_index(count: usize, of: &(dyn Fn(usize) + Sync)) {
     });
 }
 
-/// What a thread gives; its panic goes on here, with what it says.
+/// The result of a thread; its panic continues here, with its message.
 fn joined<R>(thread: std::thread::ScopedJoinHandle<'_, R>) -> R {
     thread.join().unwrap_or_else(|panic| std::panic::resume_unwind(panic))
 }

@@ -5,7 +5,7 @@
 use std::fmt;
 use std::ops::Range;
 
-/// Whether a character cannot be seen, or changes how others are seen: no name and no emitted text has one.
+/// Whether a character is invisible or changes the display of others. No name and no emitted text contains such a character.
 pub fn is_hidden(c: char) -> bool {
     c.is_control()
         || matches!(c,
@@ -16,7 +16,7 @@ pub fn is_hidden(c: char) -> bool {
             | '\u{e0000}'..='\u{e0fff}')
 }
 
-/// A text and the name by which diagnostics call it.
+/// A text and its name in diagnostics.
 #[derive(Clone, Debug)]
 pub struct Source {
     name: String,
@@ -114,7 +114,7 @@ impl Span {
     }
 }
 
-/// A value and where it stands.
+/// A value and its place.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Spanned<T> {
     /// The value.
@@ -124,7 +124,7 @@ pub struct Spanned<T> {
 }
 
 impl<T> Spanned<T> {
-    /// `value`, which stands at `span`.
+    /// `value`, found at `span`.
     pub fn new(value: T, span: Span) -> Spanned<T> {
         Spanned { value, span }
     }

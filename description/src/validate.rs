@@ -56,7 +56,7 @@ pub const MAX_PARAMETERS: usize = 1024;
 /// Most attached bodies of an arm: their exact tensors grow with every angle that is no multiple of pi/12.
 pub const MAX_ATTACHED: usize = 256;
 
-/// What a description holds before anybody derives its equations.
+/// The content of a description before the derivation of its equations.
 pub struct Structure {
     /// The arm and the places of its parts; none if a part of it could not be read.
     pub arm: Option<(Manipulator, Places)>,
@@ -90,7 +90,7 @@ struct Context<'d> {
     source: &'d Source,
     evaluator: Evaluator<'d>,
     diagnostics: &'d mut Diagnostics,
-    /// Inertias of which only one moment is given, collected for a single warning.
+    /// Inertias with only one moment, collected for a single warning.
     planar: Vec<(Span, String)>,
     /// Whether tensors that no body has are taken as written.
     inertia_as_written: bool,

@@ -1,18 +1,18 @@
 //! How far snapping can move the flange and the torques: the triangle inequality, joint after joint.
 //!
-//! Of two arms that differ by angles D_j in the origin of row j and η_j in the direction of its axis, for all states of the box
+//! Two arms may differ by angles D_j in the origin of row j and η_j in the direction of its axis. Then, for all states of the box,
 //!
 //! ```text
 //! |R - R'| ≤ Σ_j (D_j + 2 η_j)                                                                      (rad)
 //! |p - p'| ≤ Σ_j (D_j + 2 η_j) ρ_j + Σ_slides η_j Q_j + Σ dust     ρ_j: length of the rest of the chain   (m)
 //! ```
 //!
-//! where Q is the largest |q| of a slide. For the torques the numbers are taken for something else one after another: between the arm before
-//! and the arm after, a Newton-Euler recursion runs over magnitudes of angular velocity, angular acceleration and acceleration and over their
-//! differences outwards, then over forces and moments inwards; products differ by |ab - a'b'| ≤ Δa |b| + |a'| Δb. Differences are those of
-//! vectors seen in the axes of each link, where a turn is felt once by what hangs on it, or of vectors seen in the axes of the base, where a
-//! turn of the last link moves its mass by little and no force; the smaller one counts. What turns the whole arm about the direction of gravity
-//! changes no torque, and is left out of them.
+//! where Q is the largest |q| of a slide. For the torques one number after another is replaced. Between the arm before and the arm after,
+//! a Newton-Euler recursion runs outwards over magnitudes of angular velocity, angular acceleration and acceleration and over their
+//! differences, then inwards over forces and moments. Products differ by |ab - a'b'| ≤ Δa |b| + |a'| Δb. There are two bounds, and the
+//! smaller counts. One compares vectors in the axes of each link, so a turn acts once on all later links. The other compares them in the
+//! axes of the base, where a turn of the last link moves its mass a little and turns no force. A turn of the whole arm about the direction
+//! of gravity changes no torque and is left out.
 //!
 //! The box: q within its limits (none: ±pi rad, ±1 m), |dq| up to the velocity limit (none: 4 rad/s, 1 m/s), |ddq| ≤ 10.
 //! Sums are floats, rounded up at the end.
@@ -22,23 +22,23 @@ use crate::chain::{Arm, Row};
 use crate::pose::{Pose, Turn};
 use crate::written::Written;
 
-/// What a bound is multiplied by: more than all roundings here.
+/// The factor of a bound: more than all roundings here.
 const UP: f64 = 1.0 + 1e-9;
 
 /// How far the arm of robot.yaml and the one of the file are apart at most.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(crate) struct Bound {
-    /// Of the origin of the end effector, m.
+    /// The bound for the origin of the end effector, m.
     pub(crate) flange: f64,
-    /// Of its axes, rad.
+    /// The bound for its axes, rad.
     pub(crate) orientation: f64,
-    /// Of any joint's torque, N m or N.
+    /// The bound for any joint's torque, N m or N.
     pub(crate) torque: f64,
     /// The joint whose torque that is.
     pub(crate) joint: usize,
 }
 
-/// Length, angle by which it was turned, and length by which it was moved, of poses.
+/// Length of poses, their turn as an angle, and their displacement as a length.
 #[derive(Clone, Copy, Debug, Default)]
 struct Way {
     length: f64,
@@ -93,7 +93,7 @@ impl Pair {
         Pair::new(self.size * other.size, self.apart * other.size + self.size * other.apart)
     }
 
-    /// Seen in axes that are turned by so much against those of the other arm.
+    /// The same in axes that are turned by this angle against the other arm.
     fn turned(self, by: f64) -> Pair {
         Pair::new(self.size, self.apart + by * self.size)
     }
@@ -154,7 +154,7 @@ fn about_gravity(arm: &Arm) -> f64 {
     yaw
 }
 
-/// What is taken for something else at a time.
+/// The replacement of one number.
 #[derive(Clone, Copy, PartialEq)]
 enum Step {
     /// The origin of a joint.

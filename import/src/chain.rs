@@ -1,6 +1,6 @@
-//! From base to tip: which joints move, what stands between them, and which bodies each link is made of.
+//! From base to tip: the moving joints, the poses between them, and the bodies of each link.
 //!
-//! A fixed or locked joint is one more pose; what hangs on a moving link beside the chain is attached to it. Nothing is multiplied out here.
+//! A fixed or locked joint is one more pose; branches that hang on a moving link are attached to it. Nothing is multiplied out here.
 
 mod gravity;
 mod locks;
@@ -79,7 +79,7 @@ pub(crate) struct Arm {
     pub(crate) locked: Vec<Lock>,
     /// Links that were given no mass distribution and are taken to have mass 0.
     pub(crate) massless: Vec<String>,
-    /// What has a tensor that no body has, taken as written.
+    /// Links with an impossible tensor, accepted as written.
     pub(crate) impossible: Vec<String>,
     /// Bodies whose mass distributions are computed from geometries.
     pub(crate) computed: Vec<String>,
@@ -95,12 +95,12 @@ pub(crate) struct Arm {
     pub(crate) assumed: Vec<String>,
 }
 
-/// What is being put together.
+/// The chain under construction.
 struct Builder<'r> {
     tree: &'r Tree,
     format: &'r dyn Format,
     locks: locks::Locks,
-    /// Where joints beside the chain stand that are not locked, those that were asked for.
+    /// Values of the unlocked joints outside the chain, as far as requested.
     led: BTreeMap<usize, locks::Led>,
     values: Values<'r>,
     /// Which joints lie on the chain.
@@ -418,7 +418,7 @@ impl Builder<'_> {
         Some((body, attached, unreadable))
     }
 
-    /// Warns of a joint that stands where its own limits do not allow it.
+    /// Warns of a joint whose value violates its own limits.
     fn warn_outside(&mut self, index: usize, lock: &Lock) {
         let joint = &self.tree.joints[index];
         let Some([lower, upper]) = self.format.range(index, &mut self.values) else { return };
@@ -474,7 +474,7 @@ impl Builder<'_> {
         self.without_body(link);
     }
 
-    /// A link that moves and should have a mass distribution has none.
+    /// Reports a moving link without the mass distribution that it should have.
     fn without_body(&mut self, link: usize) {
         let (span, name) = (self.tree.links[link].span, &self.tree.links[link].name);
         if self.values.kinematics_alone {
@@ -498,7 +498,7 @@ impl Builder<'_> {
     }
 }
 
-/// The links that move, those of the chain and all that hangs on them, each with the last joint of the chain above it that moves.
+/// The moving links: the chain and everything that hangs on it. Each comes with the nearest moving joint of the chain above it.
 fn moved(tree: &Tree, path: &[usize], moving: &[usize]) -> BTreeMap<usize, usize> {
     let mut moved = BTreeMap::new();
     // From the tip upwards: what hangs on a joint further down is taken already.

@@ -75,7 +75,7 @@ struct Converter<'d> {
     lines: Vec<String>,
 }
 
-/// What stands in a joint: its row, and where its old link frame is in the new one.
+/// The new content of a joint: its row, and its old link frame in the new one.
 struct Row<'d> {
     /// Lines of the row.
     keys: Vec<String>,
@@ -549,7 +549,7 @@ impl<'d> Converter<'d> {
     }
 }
 
-/// Poses under a key; `None` where there are none.
+/// Poses under a key; `None` if empty.
 fn poses(key: &str, list: &[String]) -> Option<String> {
     match list {
         [] => None,

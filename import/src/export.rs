@@ -30,7 +30,7 @@ use armgen_codegen::validate::{self, NominalValues};
 
 use crate::number::{decimal, ending};
 
-/// A URDF and what it does not hold.
+/// A URDF, and the parts of the description that it cannot hold.
 #[derive(Clone, Debug)]
 pub struct Exported {
     /// The text of the URDF.
@@ -336,7 +336,7 @@ impl Writer<'_> {
         self.values.of(expression).map_or(0.0, |number| number.to_f64())
     }
 
-    /// Its digits, those of its value where that ends, or the nearest float.
+    /// Its digits; otherwise the digits of its value if they end, or the nearest float.
     fn decimal(&mut self, expression: &Expression) -> String {
         let word = self.source.slice(expression.span);
         let digits = decimal(word, expression.span, "a number", &mut Diagnostics::new());
@@ -351,7 +351,7 @@ impl Writer<'_> {
         value.as_ref().and_then(|expression| self.values.of(expression)).unwrap_or_else(Number::zero)
     }
 
-    /// The digits of a value where they end, or those of the nearest float.
+    /// The digits of a value if they end; otherwise the nearest float.
     fn written(&mut self, value: &Number) -> String {
         if let Some(text) = value.as_rational().and_then(ending) {
             return text;

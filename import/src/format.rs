@@ -1,4 +1,4 @@
-//! What the formats have in common: a tree of links and joints, and how the numbers of each part are read when the chain needs them.
+//! The common part of the formats: a tree of links and joints. The numbers of each part are read when the chain needs them.
 
 use std::collections::BTreeMap;
 
@@ -61,10 +61,10 @@ pub(crate) trait Format {
     /// How a joint of the chain moves.
     fn motion(&self, joint: usize, values: &mut Values<'_>) -> Motion;
 
-    /// Position limits of a joint beside the chain, if it has some.
+    /// Position limits of a joint outside the chain, if it has limits.
     fn range(&self, joint: usize, values: &mut Values<'_>) -> Option<[f64; 2]>;
 
-    /// What the file calls the kind of a joint.
+    /// The kind of a joint in the words of the file.
     fn kind_of(&self, joint: usize) -> String;
 
     /// The joint that a joint follows.
@@ -77,7 +77,7 @@ pub(crate) trait Format {
         (None, Decimal::zero())
     }
 
-    /// The mass distributions of a link; none if it has none, or a faulty one.
+    /// The mass distributions of a link; empty if it lacks one or has a faulty one.
     fn bodies(&self, link: usize, values: &mut Values<'_>) -> Vec<Part>;
 
     /// Whether the file gives a link a mass distribution.
@@ -93,7 +93,7 @@ pub(crate) trait Format {
         false
     }
 
-    /// Of a link whose mass distribution the file means and does not give in numbers or shapes with a formula: what it gives instead.
+    /// A mass distribution of a link that the file gives neither in numbers nor in shapes with a formula: the name of its form.
     fn lacks_body(&self, _link: usize) -> Option<String> {
         None
     }
@@ -101,7 +101,7 @@ pub(crate) trait Format {
     /// Gravity in the root link's frame.
     fn gravity(&self, values: &mut Values<'_>) -> [Decimal; 3];
 
-    /// What is taken where the file says nothing, of joints that move: a line for each.
+    /// The assumptions about moving joints for absent values of the file: a line for each.
     fn assumed(&self, _moving: &[usize]) -> Vec<String> {
         Vec::new()
     }

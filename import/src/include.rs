@@ -1,4 +1,4 @@
-//! `include` of a MuJoCo model: what stands in the root of another file, in the place of the element.
+//! `include` of a MuJoCo model: the content of the root of another file takes the place of the element.
 //!
 //! Nothing here touches a file: the caller passes what reads one, by its path relative to the folder of the model. The paths never lead out
 //! of that folder. Line breaks of what is included become blanks, so that the lines of the model keep their numbers: a fault in an included
@@ -19,10 +19,10 @@ const MAX_FILES: usize = 256;
 /// Bytes of all of them.
 const MAX_BYTES: usize = 16 << 20;
 
-/// Reads a file beside the model by its relative path, or tells why not.
+/// Reads a file by its path relative to the model, or gives the reason of the failure.
 pub type Reader<'r> = dyn Fn(&str) -> Result<String, String> + 'r;
 
-/// The model with all that it includes, under its name; a text that is no such model stays as it is. Faults are those of `include`.
+/// The model with all that it includes, under its name; a text that is no such model stays as it is. Only `include` can be faulty.
 ///
 /// # Errors
 /// The first `include` that cannot be followed, with its place.
@@ -75,7 +75,7 @@ impl Files<'_> {
         Ok((end > 0).then(|| whole + &readable[end..]))
     }
 
-    /// What stands in the root element of a file.
+    /// The content of the root element of a file.
     fn inside(&mut self, written: &str, span: Span, depth: usize) -> Result<String, Diagnostic> {
         let file = shown(written);
         let Some(path) = within_folder(written) else {

@@ -51,16 +51,16 @@ struct Compiler {
     balanced: bool,
 }
 
-/// Whose inertias are computed from geometries.
+/// The bodies whose inertias are computed from geometries.
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum FromGeometries {
-    /// Of bodies without `inertial`.
+    /// Bodies without `inertial`.
     Auto,
     Always,
     Never,
 }
 
-/// What stands behind a link.
+/// The element of a link.
 enum Held<'a, 'i> {
     World,
     Body(Node<'a, 'i>),
@@ -111,7 +111,7 @@ pub(crate) struct Mjcf<'a, 'i> {
     left_out: OnceCell<BTreeMap<String, usize>>,
 }
 
-/// The tree of a `mujoco`; `None` if it is none, which is reported.
+/// The tree of a `mujoco`; `None` if the element is another, which is reported.
 pub(crate) fn read<'a, 'i>(root: Node<'a, 'i>, diagnostics: &mut Diagnostics) -> Option<(Tree, Mjcf<'a, 'i>)> {
     let before = diagnostics.errors();
     effects::refuse_macros(root, diagnostics);
@@ -215,7 +215,7 @@ struct Reader<'r, 'a, 'i> {
 }
 
 impl<'a, 'i> Reader<'_, 'a, 'i> {
-    /// What stands in `worldbody`, a body or a `frame`, on a link.
+    /// Reads the content of `worldbody`, of a body or of a `frame` on a link.
     fn inside(&mut self, node: Node<'a, 'i>, link: usize, frame: Option<usize>, class: Option<&'a str>) {
         for inner in node.children().filter(Node::is_element) {
             match inner.tag_name().name() {
@@ -311,7 +311,7 @@ impl<'a, 'i> Reader<'_, 'a, 'i> {
         self.mjcf.joints.push(Placed { frame, steps, joint: None });
     }
 
-    /// The name of an element, if it has one; a second one of its kind is reported.
+    /// The name of an element, if it has a name; a repeated name of its kind is reported.
     fn name(&mut self, node: Node<'a, 'i>, kinds: &'static str) -> Option<(&'a str, Span)> {
         let (name, span) = attribute(node, "name")?;
         if let Some(&first) = self.named.get(&(kinds, name)) {

@@ -37,7 +37,7 @@ impl Decimal {
         self.value == 0.0
     }
 
-    /// Whether its digits are those of a whole number.
+    /// Whether its digits write a whole number.
     pub(crate) fn is_integer(&self) -> bool {
         let digits = |text: &str| text.bytes().all(|b| b.is_ascii_digit());
         let (whole, fraction) =

@@ -19,7 +19,7 @@ pub struct Options {
     pub massless: bool,
     /// Tensors that no body has are taken as written, with a warning, and the description allows them.
     pub inertia_as_written: bool,
-    /// What the rows of the description are; those of a file are `Urdf`, others are computed from them.
+    /// The convention of the rows of the description. A file has rows of `Urdf`, and the others are computed from them.
     pub convention: Convention,
 }
 

@@ -53,7 +53,7 @@ impl Turn {
         matches!(self, Turn::Rpy(rpy) if rpy.iter().all(Written::is_zero))
     }
 
-    /// What it is written with.
+    /// The numbers that it is written with.
     pub(crate) fn numbers(&self) -> Vec<&Written> {
         match self {
             Turn::Rpy(rpy) => rpy.iter().collect(),
@@ -144,7 +144,7 @@ impl Pose {
         Pose { xyz: nothing(), turn }
     }
 
-    /// Where a joint has its child that stands at a value, an expression.
+    /// The pose of the child of a joint at a value, an expression.
     pub(crate) fn of_joint(prismatic: bool, axis: [Written; 3], axis_offset: f64, text: &str, value: f64, span: Span) -> Pose {
         if !prismatic {
             let angle = Written { text: text.to_owned(), value, offset: 0.0, twelfths: None, span };

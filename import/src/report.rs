@@ -21,7 +21,7 @@ pub struct Report {
     moved: f64,
 }
 
-/// So many names of a list on a terminal: a humanoid has a hundred joints beside an arm.
+/// The most names of a list on a terminal: a humanoid has a hundred joints besides an arm.
 const NAMED: usize = 12;
 
 impl Report {

@@ -1,7 +1,7 @@
 //! Digits that mean something: `1.5708` is pi/2.
 //!
 //! An angle within a tolerance of a multiple of pi/12 is that multiple, an axis within it of a vector of -1, 0, 1 is that vector; lengths and
-//! products of inertia that are nothing but rounding are 0. Everything that is taken for something else is recorded with what was written.
+//! products of inertia that are nothing but rounding are 0. Every replacement is recorded with the original text.
 
 use std::f64::consts::PI;
 
@@ -174,7 +174,7 @@ impl Snap {
         Written::as_is(length)
     }
 
-    /// A product of inertia beside the largest moment of its tensor.
+    /// A product of inertia, compared with the largest moment of its tensor.
     pub(crate) fn product(&mut self, product: &Decimal, largest: f64) -> Written {
         if self.tolerance > 0.0 && !product.is_zero() && product.value.abs() <= DUST * largest {
             return self.take(product, "0".into(), 0.0, product.value.abs());
@@ -182,7 +182,7 @@ impl Snap {
         Written::as_is(product)
     }
 
-    /// A direction other than 0, and the angle by which it was turned.
+    /// A direction other than 0, and the angle of its turn.
     pub(crate) fn direction(&mut self, axis: &[Decimal; 3], span: Span) -> ([Written; 3], f64) {
         let as_is = axis.each_ref().map(Written::as_is);
         let length = axis.iter().map(|x| x.value * x.value).sum::<f64>().sqrt();

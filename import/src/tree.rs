@@ -23,7 +23,7 @@ pub(crate) struct Link {
     pub(crate) below: Vec<usize>,
 }
 
-/// What a link is.
+/// The kind of a link.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Role {
     /// A body, or one that may be.
@@ -74,7 +74,7 @@ pub(crate) struct Tree {
     guesses: Cell<usize>,
 }
 
-/// So many suggestions are made: each compares a name with all that there are.
+/// The most suggestions: each compares a name with all others.
 pub(crate) const GUESSES: usize = 8;
 /// Names of so many bytes and more are not compared.
 const COMPARED: usize = 256;
@@ -126,7 +126,7 @@ impl Tree {
     }
 
     /// What may have been meant by the name of a link that does not exist: the one that hangs on a joint of that name, one of nearly that name, or
-    /// one of the last links. Of the first few names only.
+    /// one of the last links. Only the first few names get a suggestion.
     pub(crate) fn meant_link(&self, name: &str) -> String {
         if let Some(joint) = self.joint(name).map(|joint| &self.joints[joint]) {
             let link = &self.links[joint.child];
@@ -143,7 +143,7 @@ impl Tree {
         meant(name, &named.iter().map(|link| link.name.as_str()).collect::<Vec<_>>())
     }
 
-    /// What may have been meant by the name of a joint that does not exist. Of the first few names only.
+    /// What may have been meant by the name of a joint that does not exist. Only the first few names get a suggestion.
     pub(crate) fn meant_joint(&self, name: &str) -> String {
         if !self.guesses() {
             return "name one of the file's joints".to_owned();

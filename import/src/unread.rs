@@ -1,7 +1,7 @@
-//! What a file says and nothing reads: names that are none of the format, and elements of which the first one holds.
+//! Parts of a file that nothing reads: names unknown to the format, and repeated elements after the first.
 //!
-//! An element that is left out is counted by the report, so one is warned of only where it is nearly one that is read: with `orign` a joint
-//! stands where its parent does. An attribute is counted by nobody, so each is warned of that nothing reads.
+//! The report counts elements that are left out. So there is a warning only for an element whose name is close to a known one: with
+//! `orign` a joint would have the frame of its parent. Nothing counts attributes, so every unread attribute gets a warning.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -13,7 +13,7 @@ use roxmltree::Node;
 use crate::xml::{attribute, place, shown};
 use crate::Code;
 
-/// So many spellings are looked at: no arm's file has more that nothing reads, and each is compared with the words that are read.
+/// The most spellings to compare with known words. No file of an arm has more unread names.
 const MOST: usize = 1000;
 
 /// What an element of each name may hold: names of elements, or of attributes.

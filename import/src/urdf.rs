@@ -39,7 +39,7 @@ pub(crate) struct Urdf<'a, 'i> {
     joints: Vec<Node<'a, 'i>>,
 }
 
-/// The tree of a `robot`; `None` if it is none, which is reported.
+/// The tree of a `robot`; `None` if the element is another, which is reported.
 pub(crate) fn read<'a, 'i>(root: Node<'a, 'i>, diagnostics: &mut Diagnostics) -> Option<(Tree, Urdf<'a, 'i>)> {
     let mut tree = Tree::new(root.attribute("name").unwrap_or("robot"));
     let before = diagnostics.errors();
@@ -196,7 +196,7 @@ impl Urdf<'_, '_> {
         values.scalar(node, name, &format!("`{name}` of joint `{}`", self.name_of(joint)))
     }
 
-    /// The mass distribution of a link; `None` if it has none, or a faulty one, which is reported.
+    /// The mass distribution of a link; `None` if it is absent, or faulty and reported.
     fn body(&self, link: usize, values: &mut Values<'_>) -> Option<Body> {
         let inertial = child(self.links[link], "inertial")?;
         let called = format!("the link `{}`", shown(self.links[link].attribute("name").unwrap_or_default()));
@@ -374,7 +374,7 @@ impl Format for Urdf<'_, '_> {
     }
 }
 
-/// A transmission with the reduction that it names: the rotor behind it, which a URDF does not have, weighs by the square of that.
+/// A transmission with its reduction. A URDF has no rotor; its inertia would act at the joint times the square of the reduction.
 fn transmission(node: Node<'_, '_>) -> String {
     let reduction = node.descendants().find(|n| n.has_tag_name("mechanicalReduction")).and_then(|n| n.text());
     match reduction.map(str::trim).filter(|text| text.parse() != Ok(1.0)) {
@@ -386,7 +386,7 @@ fn transmission(node: Node<'_, '_>) -> String {
 /// Elements of a joint that are read.
 const TAKEN: [&str; 7] = ["origin", "parent", "child", "axis", "limit", "dynamics", "mimic"];
 
-/// What may stand in an element of each name.
+/// The permitted elements in an element of each name.
 const ELEMENTS_OF: [(&str, &[&str]); 4] = [
     ("robot", &["link", "joint", "material", "transmission", "gazebo"]),
     ("link", &["inertial", "visual", "collision"]),
@@ -395,7 +395,7 @@ const ELEMENTS_OF: [(&str, &[&str]); 4] = [
 ];
 const INERTIAL: &[&str] = &["origin", "mass", "inertia"];
 
-/// What is read once of an element of each name.
+/// The elements that an element of each name has once.
 const SINGLE: [(&str, &[&str]); 3] = [("link", &["inertial"]), ("joint", &TAKEN), ("inertial", INERTIAL)];
 
 /// Attributes of elements that say how the arm is made.

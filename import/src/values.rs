@@ -18,7 +18,7 @@ pub(crate) struct Values<'r> {
     pub(crate) diagnostics: &'r mut Diagnostics,
     pub(crate) snap: Snap,
     pub(crate) inertia_as_written: bool,
-    /// What has a tensor that no body has.
+    /// Links with an impossible tensor.
     pub(crate) impossible: Vec<String>,
     /// Bodies whose mass distributions are computed from geometries.
     pub(crate) computed: Vec<String>,
@@ -30,7 +30,7 @@ pub(crate) struct Values<'r> {
     pub(crate) unknown_efforts: usize,
 }
 
-/// A position limit, rad or m, that no arm has: files write 1e16 or the largest float where a joint has none.
+/// A position limit, rad or m, beyond every arm: files write 1e16 or the largest float for a joint without limits.
 const BOUNDLESS: f64 = 1e6;
 /// A rate in rad/s, and one in m/s, beyond which no joint of an arm moves.
 const FASTEST_TURN: f64 = 60.0;
@@ -114,7 +114,7 @@ impl Values<'_> {
         Some(self.snap.quaternion(quat, span))
     }
 
-    /// Position limits; `None` where there are none, where one of them is beyond any arm, or faulty and reported.
+    /// Position limits; `None` if absent, if one of them is beyond every arm, or if faulty and reported.
     pub(crate) fn position(
         &mut self,
         limit: Span,
@@ -208,24 +208,24 @@ impl Values<'_> {
         None
     }
 
-    /// A coefficient of friction; 0 is none.
+    /// A coefficient of friction; `None` for 0.
     pub(crate) fn coefficient(&mut self, value: Option<Decimal>, joint: &str) -> Option<Decimal> {
         let help = "friction takes energy from the arm, so its coefficient is at least 0";
         self.not_negative(value, "a friction coefficient", joint, Code::NegativeFriction, help)
     }
 
-    /// An inertia that a joint alone feels; 0 is none.
+    /// An inertia that only a joint feels; `None` for 0.
     pub(crate) fn armature(&mut self, value: Option<Decimal>, joint: &str) -> Option<Decimal> {
         self.not_negative(value, "the armature", joint, Code::NegativeArmature, "an inertia is at least 0")
     }
 
-    /// The stiffness of a spring; 0 is none.
+    /// The stiffness of a spring; `None` for 0.
     pub(crate) fn stiffness(&mut self, value: Option<Decimal>, joint: &str) -> Option<Decimal> {
         let help = "a spring pulls back to its rest, so its stiffness is at least 0";
         self.not_negative(value, "the stiffness", joint, Code::MjcfFeature, help)
     }
 
-    /// What is above 0; 0 is none, and less is a fault.
+    /// A value above 0; `None` for 0, and a negative value is a fault.
     fn not_negative(&mut self, value: Option<Decimal>, what: &str, joint: &str, code: Code, help: &str) -> Option<Decimal> {
         let value = value.filter(|value| !value.is_zero())?;
         if value.value > 0.0 {

@@ -13,7 +13,7 @@ pub(crate) struct Written {
     pub(crate) value: f64,
     /// How far that is from what the file says.
     pub(crate) offset: f64,
-    /// So many twelfths of pi, where it is an angle that is some.
+    /// The number of twelfths of pi, if it is such an angle.
     pub(crate) twelfths: Option<i64>,
     /// The place of what it stands for.
     pub(crate) span: Span,

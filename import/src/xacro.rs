@@ -1,4 +1,4 @@
-//! Xacro: macros that stand for a URDF, and what is left of them in one.
+//! Xacro: macros that write a URDF, and their traces in a URDF.
 //!
 //! Definitions that nothing uses mean nothing, and are left out. A use of any is a file that was not written out: one error, with the command.
 
@@ -22,7 +22,7 @@ pub(crate) fn is_of(node: Node<'_, '_>) -> bool {
     node.tag_name().namespace().is_some_and(|uri| uri.contains("xacro"))
 }
 
-/// Reports a file that was not written out, once, at the first use; whether it is one.
+/// Reports an unexpanded file once, at the first use of a macro; returns whether it is unexpanded.
 pub(crate) fn refuse(source: &Source, root: Node<'_, '_>, diagnostics: &mut Diagnostics) -> bool {
     let found = first_use(root);
     if let Some(span) = found {

@@ -1,7 +1,8 @@
 //! XML as a tree with places, within bounds that hold before anything is built from it.
 //!
-//! A scan of the text, linear in its length, counts elements, attributes of one element, nesting and declarations of namespaces; what exceeds
-//! the bounds is never given to the parser, whose search for duplicate attributes is quadratic, and which keeps all namespaces at each element.
+//! A scan of the text, linear in its length, counts elements, attributes of one element, nesting and declarations of namespaces.
+//! A text beyond the bounds never reaches the parser: its search for duplicate attributes is quadratic, and it keeps all namespaces at
+//! each element.
 
 use std::borrow::Cow;
 
@@ -158,7 +159,7 @@ fn refusal(source: &Source, error: &Error) -> Diagnostic {
     }
 }
 
-/// What is wrong with an entity at a place, and what to do about it.
+/// The fault of an entity at a place, and the remedy.
 fn entity(text: &str, at: usize, error: &Error) -> Option<(String, String)> {
     const ENTITIES: [&str; 5] = ["amp", "lt", "gt", "quot", "apos"];
     let word = text.get(at..)?.strip_prefix('&')?;
@@ -198,8 +199,8 @@ fn unclosed_quote(text: &str, at: usize) -> Option<usize> {
     open.map(|(from, _)| from).or_else(|| closed.filter(holds_a_name).map(|(from, _)| from))
 }
 
-/// The character at a place within an open value that must be written as an entity, and that. A `<` behind a `>` begins the next tag, of
-/// which the quote before it knows nothing.
+/// The character at a place within an open value that must be written as an entity, and that. A `<` after a `>` begins the next
+/// tag, which does not belong to the open value.
 fn unescaped(text: &str, opened: usize, at: usize) -> Option<(char, &'static str)> {
     match text[at..].chars().next()? {
         '&' => Some(('&', "&amp;")),
@@ -225,7 +226,7 @@ pub(crate) fn xacro(span: Span, source: &Source) -> Diagnostic {
     Diagnostic::new(Code::Xacro, span, "this is xacro, not a URDF", "not written out", help)
 }
 
-/// A description where a URDF is asked for.
+/// A description instead of a URDF.
 fn description_instead(source: &Source) -> Option<Diagnostic> {
     let text = source.text();
     if text.trim_start().starts_with('<') {
@@ -249,7 +250,7 @@ fn conflict(text: &str) -> Option<Diagnostic> {
     Some(Diagnostic::new(Code::XmlSyntax, Span::new(start, start + 7), message, "a merge conflict begins here", help))
 }
 
-/// What is wrong at a place outside of the root element.
+/// The fault at a place outside of the root element.
 fn outside(text: &str, at: usize) -> Option<Diagnostic> {
     let name_at = |start: usize| {
         let name = &text[start + 1..];
@@ -458,7 +459,7 @@ pub(crate) fn place(node: Node<'_, '_>) -> Span {
     Span::new(start, character_end(node.document().input_text(), end))
 }
 
-/// The first end of a character behind a place.
+/// The first end of a character after a place.
 fn character_end(text: &str, at: usize) -> usize {
     (at + 1..text.len()).find(|&end| text.is_char_boundary(end)).unwrap_or(text.len())
 }

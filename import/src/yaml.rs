@@ -1,4 +1,4 @@
-//! The text of robot.yaml: what a person likes to read, the same for the same file.
+//! The text of robot.yaml: readable, and always the same for the same file.
 
 use std::fmt::Write;
 
@@ -10,7 +10,7 @@ use crate::pose::{Pose, Turn};
 use crate::report::Report;
 use crate::written::Written;
 
-/// Why a description that takes tensors as they are written says so.
+/// The reason that a description gives for accepting tensors as written.
 const IMPOSSIBLE: &str = "B(q) may not be positive definite: for kinematics and a look, not for control";
 
 /// The description of an arm.
@@ -128,7 +128,7 @@ fn vector(numbers: &[Written]) -> String {
     format!("[{}]", numbers.iter().map(|x| x.text.as_str()).collect::<Vec<_>>().join(", "))
 }
 
-/// A rotation as keys of a mapping; `None` where there is none.
+/// A rotation as keys of a mapping; `None` without a rotation.
 fn rotation(turn: &Turn) -> Option<String> {
     match turn {
         turn if turn.is_none() => None,

@@ -123,7 +123,7 @@ fn rows_are_those_of_the_rules() {
     assert!(nearly.lines.iter().any(|line| line.starts_with("nearly-parallel")), "{:?}", nearly.lines);
 }
 
-/// What inverse kinematics is asked for is named, so it stays; and what is named by the geometry is said where its values stand instead.
+/// The choices for inverse kinematics are names, so they stay. A report names the parameters of the geometry that values replace.
 #[test]
 fn what_inverse_kinematics_is_asked_for_stays() {
     let (_, panda) = arms().into_iter().find(|(name, _)| name.contains("panda7")).expect("a robot");
@@ -185,7 +185,7 @@ fn parameters_whose_values_are_written_are_named() {
     }
 }
 
-/// Said beside the file, since the file has the others in its head.
+/// These notes are messages; the head of the file has the others.
 #[test]
 fn comments_that_are_left_out_are_named() {
     let arm = "name: a\nconvention: urdf\ngravity: [0, 0, -9.81]\njoints:\n  - {name: a, type: revolute, axis: [0, 0, 1], link: {mass: 1, inertia: {xx: 1, yy: 1, zz: 1}}}\n";

@@ -1,4 +1,4 @@
-//! What is exported and imported is the same arm, and the same text from then on.
+//! Export and import give the same arm, and from then on the same text.
 
 use crate::common;
 
@@ -73,7 +73,7 @@ fn the_friction_of_rotors_is_part_of_damping_and_their_masses_are_named() {
     assert!(none.urdf.contains("damping=\"0.50\"") && !none.lines.join("\n").contains("damping"), "{}", none.urdf);
 }
 
-/// Masses add up exactly, and what is 0 is not left out.
+/// Masses add up exactly, and zeros are kept.
 #[test]
 fn what_is_nothing_is_not_named_as_left_out() {
     let lines = |joints: &[&str]| {

@@ -133,7 +133,7 @@ fn of_many_unknown_names_the_first_few_get_a_suggestion() {
     assert_eq!(joints(&|k| format!("<mimic joint='joinnt{k}'/>")), 8);
 }
 
-/// Of names that nothing reads so many are looked at, and so many classes are told what they may have been meant to be.
+/// The numbers of examined unread names and of suggestions for classes are bounded.
 #[test]
 fn many_names_of_attributes_and_classes_are_read_in_bounded_time() {
     let joint = |attributes: String| format!("<joint name='j' type='continuous'><axis {attributes}/></joint>");
@@ -149,7 +149,7 @@ fn many_names_of_attributes_and_classes_are_read_in_bounded_time() {
     assert_eq!(diagnostics.iter().filter(|diagnostic| diagnostic.help.contains("did you mean")).count(), 8);
 }
 
-/// Each joint follows the one before it, and stands where that one does, twice as far: within bounds of a description, and of time.
+/// Each joint follows the previous one with the factor 2: within the bounds of a description, and in bounded time.
 #[test]
 fn a_long_line_of_followers_is_refused_in_bounded_time() {
     let line = |count: usize, last: &str, text: &str| {
@@ -229,7 +229,7 @@ fn many_bodies_within_frames_are_read_in_bounded_time() {
     check(format!("<mujoco>{loop_of_classes}<worldbody><body>{inertial}<joint class='b'/></body></worldbody></mujoco>"), None);
 }
 
-/// Kind and text of each thing that is said of a file.
+/// Kind and text of each diagnostic of a file.
 fn said(text: &str) -> Vec<(&'static str, String)> {
     let (_, diagnostics) = import(&Source::new("robot.xml", text), &Options::default());
     diagnostics.iter().map(|d| (d.code.name(), format!("{}; {}", d.message, d.help))).collect()
@@ -252,7 +252,7 @@ fn entities_are_told_what_they_lack() {
     }
 }
 
-/// What is missing is told, and not what follows from it.
+/// A missing element is reported, and its consequences are not.
 #[test]
 fn classes_of_a_file_that_is_not_there_are_not_called_unknown() {
     let body = r#"<body name="link" childclass="arm"><inertial mass="1" pos="0 0 0" diaginertia="1 1 1"/><joint name="one" class="big"/></body>"#;

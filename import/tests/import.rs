@@ -1,4 +1,4 @@
-//! What is easily read wrongly, in one arm of our own making; and that the result is a valid description.
+//! Elements that are easily misread, in one arm of our own making. The result is a valid description.
 
 use armgen_codegen::description::Convention;
 use armgen_codegen::diagnostic::Colour;
@@ -140,7 +140,7 @@ fn what_turns_the_arm_about_gravity_moves_no_torque() {
     assert!(orientation > 1e-6 && torque > 1e-6, "{orientation} {torque}");
 }
 
-/// Limits of 1e6 and more are none, those below are kept, and the report counts what was left out.
+/// Limits of 1e6 and more are dropped, smaller ones are kept, and the report counts the dropped ones.
 #[test]
 fn limits_beyond_any_arm_are_none() {
     let with = |limit: &str| EVERYTHING.replace("lower=\"-2.8973\" upper=\"2.8973\"", limit);
@@ -166,7 +166,7 @@ fn a_joint_of_the_chain_can_be_locked() {
     assert!(yaml.contains("angle: pi/4"), "{yaml}");
 }
 
-/// A joint of the chain that follows a locked one stands where that one makes it stand.
+/// A joint of the chain that follows a locked joint gets its value from it.
 #[test]
 fn what_follows_a_locked_joint_stands_still() {
     let text = "<robot name='a'><link name='b'/><link name='l'><inertial><origin xyz='1e-14 0 0'/><mass value='1'/>\
@@ -189,7 +189,7 @@ fn what_follows_a_locked_joint_stands_still() {
     assert!(imported.yaml.contains("inertia: {xx: 0.1, yy: 0.1, zz: 0.1}  # 1e-17 in line 1\n"), "{}", imported.yaml);
 }
 
-/// Fingers beside the chain: each joint with its leader, multiplier and offset, on the link that the joint `turn` of the chain moves.
+/// Fingers outside the chain: each joint with its leader, multiplier and offset, on the link that the joint `turn` of the chain moves.
 fn with_fingers(fingers: &[(&str, &str)]) -> String {
     let body = "<inertial><mass value='1'/><inertia ixx='0.1' iyy='0.1' izz='0.1' ixy='0' ixz='0' iyz='0'/></inertial>";
     let finger = |(name, mimic): &(&str, &str)| {
@@ -236,7 +236,7 @@ fn what_follows_a_follower_stands_where_that_one_does() {
     }
 }
 
-/// Of several elements of one kind in a class the last one holds, and a class comes before the one around it.
+/// The last of several elements of one kind in a class holds, and a class precedes the enclosing class.
 #[test]
 fn the_last_default_of_the_innermost_class_holds() {
     let axis = |class: &str| {
@@ -369,7 +369,7 @@ fn velocities_that_no_joint_reaches_are_left_out() {
     }
 }
 
-/// An arm of one joint with a finger, and a frame beside it, as a URDF and as a MuJoCo model.
+/// An arm of one joint with a finger and another frame, as a URDF and as a MuJoCo model.
 fn with_a_finger(frame: &str) -> [String; 2] {
     let inertial = "<inertial><mass value='1'/><inertia ixx='1' iyy='1' izz='1' ixy='0' ixz='0' iyz='0'/></inertial>";
     let limit = "<axis xyz='0 1 0'/><limit lower='-1' upper='1' velocity='1' effort='1'/>";

@@ -94,7 +94,8 @@ fn shapes_are_exact() {
     assert!((number("xx:") - across).abs() < 1e-16 && (number("zz:") - along).abs() < 1e-16, "{inertia}");
 }
 
-/// As in MuJoCo 4.0.0: `inertiafromgeom` and groups choose between what is given and what is computed, and tensors that break the triangle inequality alone are balanced.
+/// As in MuJoCo 4.0.0: `inertiafromgeom` and groups choose between given and computed inertias. Balancing changes only tensors that
+/// violate the triangle inequality.
 #[test]
 fn the_compiler_chooses_what_has_mass() {
     let model = |compiler: &str, tensor: &str, geom: &str| {
@@ -118,7 +119,7 @@ fn the_compiler_chooses_what_has_mass() {
     assert!(imported.is_none() && diagnostics.iter().all(|fault| fault.message.contains("balanceinertia")));
 }
 
-/// The accelerations of MuJoCo differ by each of these flags; what is switched off is left out and said.
+/// Each of these flags changes the accelerations of MuJoCo. Import drops the disabled effects and reports them.
 #[test]
 fn flags_switch_forces_off() {
     let with = |flag: &str| {
@@ -161,7 +162,7 @@ fn equalities_that_are_switched_off_are_none() {
     assert!(!with("contact='disable'") && with("equality='disable'") && with("constraint='disable'"));
 }
 
-/// Files by their paths; what is asked for and is not there is an error.
+/// Files by their paths; a missing file is an error.
 fn written_out(files: &[(&str, &str)]) -> Result<String, String> {
     let files: BTreeMap<&str, &str> = files.iter().copied().collect();
     let read = |path: &str| files.get(path).map(|text| (*text).to_owned()).ok_or_else(|| format!("no {path}"));

@@ -1,4 +1,4 @@
-//! `armgen completions`: what a shell needs to complete the arguments.
+//! `armgen completions`: the script by which a shell completes the arguments.
 
 use clap::CommandFactory;
 

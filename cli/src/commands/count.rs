@@ -31,7 +31,7 @@ pub(crate) fn run(file: &Path, format: CountFormat, functions: &[String], withou
     })
 }
 
-/// The counts of a function under their names, without that of fused operations where there are none.
+/// The counts of a function by name; fused operations only with `--fma`.
 fn counts(cost: &Cost, fuse: bool) -> impl Iterator<Item = (&'static str, usize)> {
     let Cost { mul, add, fused, div, neg, sincos, exp } = *cost;
     let all = [("mul", mul), ("add", add), ("fused", fused), ("div", div), ("neg", neg), ("sincos", sincos), ("exp", exp)];

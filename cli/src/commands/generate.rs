@@ -1,4 +1,4 @@
-//! `armgen generate`: the module as a file or on standard output, and what stands beside the file on request.
+//! `armgen generate`: the module as a file or on standard output, and its companion files on request.
 
 use std::collections::BTreeSet;
 use std::io::ErrorKind;
@@ -86,7 +86,7 @@ pub(crate) struct Beside {
 }
 
 impl Beside {
-    /// The options that need a file to stand beside.
+    /// The given options that need a file for the module.
     fn flags(&self) -> Vec<&'static str> {
         let all = [
             (self.verify, "--verify"),
@@ -230,7 +230,7 @@ fn compared(files: &[Output], source: &Source) -> u8 {
     code
 }
 
-/// What is left beside a new module of one that was there before.
+/// Warns of companion files that remain from an earlier module.
 fn warn_of_stale(source: &Source, language: Language, out: &Path, beside: &Beside, files: &[Output]) {
     let certificate = certificate_beside(out);
     if !beside.verify && certificate.exists() {
@@ -249,7 +249,7 @@ fn warn_of_stale(source: &Source, language: Language, out: &Path, beside: &Besid
     }
 }
 
-/// Writes files to different places, none of them the description's; into a `folder` that is made where there is none.
+/// Writes files to different places, never over the description; creates `folder` if absent.
 fn write_all(files: &[Output], description: &Path, folder: Option<&Path>) -> Result<(), String> {
     let mut taken = BTreeSet::from([place(description)]);
     for (path, _) in files {
@@ -268,7 +268,7 @@ fn write_all(files: &[Output], description: &Path, folder: Option<&Path>) -> Res
         .try_for_each(|(path, text)| write(path, text).map_err(|error| format!("cannot write {}: {error}", path.display())))
 }
 
-/// What stands in the folder of a package and is not of it could hide a function.
+/// Warns of files in the folder of a package that do not belong to it: they could hide a function.
 fn warn_of_others(folder: &Path, files: &[Output]) {
     let entries = std::fs::read_dir(folder).into_iter().flatten().flatten().map(|entry| entry.path());
     let mut others: Vec<PathBuf> = entries.filter(|path| files.iter().all(|(own, _)| own != path)).collect();
@@ -325,7 +325,7 @@ fn unfit(
 /// A file to write.
 type Output = (PathBuf, String);
 
-/// A module and what is asked for beside it.
+/// A module and its requested companions.
 struct Requested<'a> {
     source: &'a Source,
     generated: &'a Generated,
@@ -379,7 +379,7 @@ impl Requested<'_> {
         self.out.file_stem().unwrap_or_default().to_string_lossy().into_owned()
     }
 
-    /// A file beside the module, named after it.
+    /// A companion file, named after the module.
     fn file(&self, ending: &str, text: String) -> Output {
         (self.out.with_file_name(self.stem() + ending), text)
     }
@@ -438,7 +438,7 @@ impl Requested<'_> {
         Ok(files)
     }
 
-    /// The module of inverse kinematics, and its certificate where one is asked for.
+    /// The module of inverse kinematics, and its certificate on request.
     fn inverse_kinematics(&self) -> Result<Vec<Output>, String> {
         let (file, text) = match self.language {
             Language::C => self.file("_ik.h", self.generated.inverse_kinematics_in_c()?),

@@ -68,10 +68,10 @@ pub(crate) struct Results {
     report: Option<PathBuf>,
 }
 
-/// Of so many bodies beside the links import says what the equations refuse.
+/// The most bodies besides the links for which import reports faults of the equations.
 const MOST_BODIES: usize = 30;
 
-/// The name by which standard input is asked for.
+/// The name of standard input.
 const STANDARD_INPUT: &str = "-";
 
 /// The text of a file, or of standard input, with the files that a MuJoCo model includes.
@@ -178,7 +178,7 @@ fn note_faults(source: &Source, options: &Options, imported: &Imported, results:
 /// Tolerances that may restore what digits were rounded from, rad.
 const SNAPS: [f64; 2] = [1e-3, 2e-3];
 
-/// What inverse kinematics an arm with rounded angles has, which `--snap` gives it a closed form, and what that costs.
+/// A note about the inverse kinematics of an arm with rounded angles: the `--snap` that gives it a closed form, and its cost.
 fn note_inverse_kinematics(source: &Source, options: &Options, description: &Source, found: &Result<InverseKinematics, String>) {
     let is_closed = |found: &InverseKinematics| !matches!(found.construction, Construction::General(_));
     if found.as_ref().is_ok_and(is_closed) {

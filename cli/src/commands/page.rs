@@ -59,7 +59,7 @@ fn read(path: &Path, name: String) -> Result<Run, u8> {
     Ok(Run { name, log: Some(log), ..Run::default() })
 }
 
-/// The names of logs: those of their files, with as many of their folders in front as tell them apart; an error with one that is named twice.
+/// The names of logs: their file names, with as many folders in front as needed to distinguish them. Error: a log that is given twice.
 fn names(logs: &[PathBuf]) -> Result<Vec<String>, &Path> {
     let places: Vec<PathBuf> = logs.iter().map(|log| place(log).with_extension("")).collect();
     let name = |k: usize, folders: usize| {

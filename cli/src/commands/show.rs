@@ -9,7 +9,7 @@ use armgen_codegen::Model;
 
 use crate::{input, terminal, ShowFormat, UNREADABLE};
 
-/// How the equations are asked for.
+/// The requested form of the equations.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Asked {
     pub(crate) symbolic: bool,
@@ -57,7 +57,7 @@ pub(crate) fn run(file: &Path, quantities: &[String], asked: &Asked) -> u8 {
     })
 }
 
-/// What is no quantity but a procedure: its class and its steps.
+/// Not a quantity but a procedure: its class and its steps.
 const INVERSE_KINEMATICS: &str = "inverse_kinematics";
 
 fn inverse_kinematics(model: &Model, otherwise: bool) -> u8 {

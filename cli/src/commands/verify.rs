@@ -15,8 +15,8 @@ use indicatif::{ProgressBar, ProgressStyle};
 
 use crate::{companions, input, terminal, FAULTY};
 
-/// Where the certificate of a module stands: `robot.cert.json` for `robot.rs`; `robot.h.cert.json` for `robot.h`, since both may be beside each
-/// other, and so on.
+/// The path of the certificate of a module: `robot.cert.json` for `robot.rs`; `robot.h.cert.json` for `robot.h`, since a folder may hold
+/// both, and so on.
 pub(crate) fn certificate_beside(module: &Path) -> PathBuf {
     match module.extension().and_then(OsStr::to_str) {
         None | Some("rs") => module.with_extension("cert.json"),
@@ -102,7 +102,7 @@ fn options_of(language: Language, report: &Report) -> String {
     unusual.map(|(option, value, _)| format!(" --{option} {value}")).collect()
 }
 
-/// The language that is asked for, or that of the extension; what neither says is not guessed, and no advice would be right for it.
+/// The given language, or the language of the extension. Without either there is an error: advice about a guess would mislead.
 fn language_of(module: &Path, asked: Option<Language>) -> Result<Language, String> {
     if module.is_dir() {
         return Ok(Language::Matlab);
@@ -203,7 +203,7 @@ fn line_of(module: &str, fault: &str, language: Language) -> Option<usize> {
     module.lines().position(begins).map(|line| line + 1)
 }
 
-/// What a report that passed comes to, in a line.
+/// A report that passed, in a line.
 pub(crate) fn summary(report: &Report) -> String {
     let worst = report.functions.iter().map(|f| f.log2_odds).fold(f64::NEG_INFINITY, f64::max);
     let functions = input::counted(report.functions.len(), "function");

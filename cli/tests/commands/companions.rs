@@ -1,4 +1,4 @@
-//! What stands beside a module: tests, bounds, inverse kinematics, the face for C.
+//! Companions of a module: tests, bounds, inverse kinematics, the interface for C.
 
 use std::fs;
 use std::path::Path;
@@ -86,7 +86,7 @@ fn inverse_kinematics_is_named_shown_and_written() {
     assert!(text.contains("pub fn inverse_kinematics(t: &[[Real; 4]; 4]) -> Solutions {"), "{text}");
 }
 
-/// The files that `generate` writes beside a module, of one robot, and then the module of another.
+/// The companions of a module of one robot, and then the module of another.
 #[test]
 fn companions_of_another_description_are_told() {
     let folder = folder("stale");

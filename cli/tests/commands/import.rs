@@ -1,4 +1,4 @@
-//! What people type with the files that they hold: which command is named, what is read from standard input and beside a model.
+//! Commands that people type with their files: hints about other commands, standard input, and files that a model includes.
 
 use std::fs;
 use std::io::Write;
@@ -59,7 +59,7 @@ fn a_urdf_is_read_from_standard_input() {
     assert!(err(&including).contains("standard input is in no folder"), "{}", err(&including));
 }
 
-/// Included files are read beside the model, and nowhere else.
+/// Included files are read from the folder of the model, and nowhere else.
 #[test]
 fn a_model_includes_files_of_its_folder_alone() {
     let folder = folder("include");

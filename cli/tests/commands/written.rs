@@ -137,7 +137,7 @@ fn one_file_is_not_written_twice_whatever_it_is_called() {
     }
 }
 
-/// Of a link to the module the companion would go into the module.
+/// A companion whose path links to the module would overwrite the module.
 #[cfg(unix)]
 #[test]
 fn a_companion_is_not_written_through_a_link_to_its_module() {

@@ -7,7 +7,7 @@ use crate::document::reader::{Fields, Reader};
 use crate::document::yaml::{Kind, Node};
 use crate::source::Spanned;
 
-/// Keys of other formats, and what they are called here in the same place.
+/// Keys of other formats, and the keys of this format with the same meaning in the same place.
 pub(super) const OTHER_NAMES: &[(&str, &str)] = &[
     ("m", "mass"),
     ("r", "a"),
@@ -105,7 +105,7 @@ pub(super) const OTHER_PLACES: &[(&str, &str, &str)] = &[
     ("rpy", "com", "the axes of the tensor stand beside its elements: `inertia: {xx: ..., rpy: [r, p, y]}`"),
 ];
 
-/// Where an element of a tensor stands in a list of nine.
+/// The row and the column of each element of a tensor in a list of nine.
 const ELEMENTS: [(&str, usize, usize); 6] = [("xx", 0, 0), ("yy", 1, 1), ("zz", 2, 2), ("xy", 0, 1), ("xz", 0, 2), ("yz", 1, 2)];
 
 /// The keys of a row of Denavit and Hartenberg.

@@ -11,7 +11,7 @@
 //! | `velocity`, `angular_velocity` | both keys `velocity`, of a joint that slides and of one that turns | `length`, `angle` per second |
 //! | `force`, `torque` | `effort`, and `viscous`, `coulomb`, `offset`, `cubic`, `torque`, `stiffness`: per m and s, and per rad and s | N, N m |
 //!
-//! A whole expression is in the unit, the values of its names included. Of angles and their rates those with `pi` or `deg(...)` are in radians.
+//! A whole expression is in the unit, the values of its names included. Angles and their rates are in radians if they contain `pi` or `deg(...)`.
 
 use std::collections::BTreeMap;
 

@@ -5,7 +5,7 @@ use crate::document::Expression;
 use crate::kinds::JointKind;
 use crate::source::Spanned;
 
-/// What an expression gives the value of.
+/// The quantity whose value an expression gives.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Role {
     /// Another parameter.
@@ -14,7 +14,7 @@ pub enum Role {
     Gravity,
     /// A length: a, d, the xyz of a pose.
     Length,
-    /// An angle: alpha, theta, those of a rotation.
+    /// An angle: alpha, theta, an angle of a rotation.
     Angle,
     /// A mass.
     Mass,
@@ -86,11 +86,11 @@ pub enum Dimension {
     Angle,
     /// kg.
     Mass,
-    /// Of a body, kg m².
+    /// A moment of inertia of a body, kg m².
     Inertia,
-    /// Of a product of inertia, kg m²: `products` decides its sign.
+    /// A product of inertia, kg m²: `products` decides its sign.
     ProductOfInertia,
-    /// Of a rotor before the gear, and the armature of a joint that turns, kg m².
+    /// The inertia of a rotor before the gear, and the armature of a joint that turns, kg m².
     RotorInertia,
     /// The rate of a joint that slides, m/s.
     Velocity,

@@ -56,7 +56,7 @@ fn faults_of_one_long_line_are_counted_where_they_would_take_long_to_show() {
     assert!(rendered.len() < 2000, "{}", rendered.len());
 }
 
-/// An error is shown whatever stands before it: it is why there is no arm.
+/// An error is shown after any number of warnings: it is the reason why there is no arm.
 #[test]
 fn the_first_error_is_shown_behind_all_warnings() {
     let shown = |text: String, warnings: usize| {

@@ -1,8 +1,8 @@
 //! YAML text -> a tree of nodes, each with its place.
 //!
-//! The tree is built from the events of a YAML parser, not through serde: so scalars stay the text that stands in the file, every
-//! duplicate key is found (not the first alone), and aliases, tags and second documents can be judged where they stand.
-//! Absent from here on: YAML syntax, anchors and aliases (a node that is referred to is copied), duplicate keys.
+//! The tree is built from the events of a YAML parser, not through serde. So scalars keep the text of the file, every duplicate key is
+//! found (not only the first), and aliases, tags and second documents are judged at their places.
+//! Absent from here on: YAML syntax, anchors and aliases (each alias becomes a copy of its node), duplicate keys.
 
 mod cause;
 
@@ -25,9 +25,9 @@ const MAX_COPIED: usize = 1 << 20;
 /// A value in the tree.
 #[derive(Clone, Debug)]
 pub struct Node {
-    /// Where it stands; without the key before it.
+    /// Its place, without the key before it.
     pub span: Span,
-    /// What it is.
+    /// Its kind.
     pub kind: Kind,
 }
 
@@ -49,12 +49,12 @@ pub struct Scalar {
     pub text: String,
     /// Whether it stands without quotes, so that YAML gives `~` and the like a meaning of their own.
     pub plain: bool,
-    /// Offset of the text in the source, where it stands there letter by letter.
+    /// Offset of the text in the source, if the source has it letter by letter.
     pub verbatim: Option<usize>,
 }
 
 impl Node {
-    /// What this is, for a message.
+    /// The kind of node, for a message.
     pub fn describe(&self) -> &'static str {
         match &self.kind {
             Kind::Scalar(s) if s.is_nothing() => "nothing",
@@ -84,7 +84,7 @@ impl Scalar {
     }
 }
 
-/// The tree of `source`; `None` if there is none.
+/// The tree of `source`; `None` for a text without a tree.
 pub fn read(source: &Source, diagnostics: &mut Diagnostics) -> Option<Node> {
     let text = source.text();
     if text.len() > MAX_TEXT {
@@ -223,7 +223,7 @@ impl Builder<'_> {
         self.root
     }
 
-    /// Offset of a scalar's text in the source, if it stands there as it is.
+    /// Offset of a scalar's text in the source, if the source has it letter by letter.
     fn verbatim(&self, text: &str, span: Span, style: ScalarStyle) -> Option<usize> {
         let start = match style {
             ScalarStyle::Plain => span.start,
@@ -233,7 +233,7 @@ impl Builder<'_> {
         (self.source.text().get(start..start + text.len()) == Some(text)).then_some(start)
     }
 
-    /// Ends the innermost list or mapping; `end` is the place of its closing bracket, if it has one.
+    /// Ends the innermost list or mapping; `end` is the place of its closing bracket, empty without a bracket.
     fn close(&mut self, end: Span) -> Option<()> {
         let Open { start, anchor, flow, content } = self.open.pop()?;
         let (kind, last) = match content {
@@ -363,7 +363,7 @@ impl Builder<'_> {
     }
 }
 
-/// Whether a comment stands in a text.
+/// Whether a text contains a comment.
 pub fn has_comment(text: &str) -> bool {
     cause::quote_and_comment(text).1
 }
@@ -432,7 +432,7 @@ fn wants_space(colon: Span, word: &str, rest: &str) -> Diagnostic {
     Diagnostic::new(Code::YamlSyntax, colon, message, "here", format!("write `{word}: {}`", super::excerpt(rest)))
 }
 
-/// The key before a colon at a place, and the bracket behind it.
+/// The key before the colon at a place, and the bracket after the colon.
 fn key_before(text: &str, at: usize) -> Option<(&str, char)> {
     let bracket = text.get(at..)?.strip_prefix(':')?.chars().next()?;
     let word = text[..at].rsplit(|c: char| !(c.is_alphanumeric() || c == '_')).next()?;
@@ -450,7 +450,7 @@ pub(super) fn keys_without_space(node: &Node, diagnostics: &mut Diagnostics) -> 
     keys.iter().map(|(word, _)| Spanned::new((*word).to_owned(), node.span)).collect()
 }
 
-/// What the reader's complaint means, and what to do about it.
+/// The meaning of the parser's error, and the remedy.
 fn explain(kind: &ErrorKind) -> (String, String) {
     use ErrorKind as E;
     let (message, help): (&str, &str) = match kind {

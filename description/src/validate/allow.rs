@@ -1,10 +1,10 @@
-//! `allow`: kinds of warnings that the file asks to be silent about, and the one kind of an error that it may take for a warning.
+//! `allow`: kinds of warnings that the file accepts, and the only kind of error that it may accept.
 
 use crate::diagnostic::{Code, Diagnostic, Diagnostics, Severity};
 use crate::source::Spanned;
 use crate::suggest::did_you_mean;
 
-/// The names that are those of warnings; what is none is reported.
+/// The names that are kinds of warnings; others are reported.
 pub(super) fn check(names: &[Spanned<String>], diagnostics: &mut Diagnostics) -> Vec<String> {
     let mut allowed = Vec::new();
     for name in names {
@@ -20,12 +20,13 @@ pub(super) fn check(names: &[Spanned<String>], diagnostics: &mut Diagnostics) ->
     allowed
 }
 
-/// Whether a tensor that no body has is taken as written: what a vendor publishes can be looked at, though its B(q) need not be positive definite.
+/// Whether the file accepts a tensor that no body has. Vendors publish such tensors; users can inspect them, but B(q) need not be
+/// positive definite.
 pub(super) fn takes_inertia_as_written(names: &[Spanned<String>]) -> bool {
     names.iter().any(|name| name.value == Code::ImpossibleInertia.name())
 }
 
-/// Whether this is the name of a kind of warning; what to do otherwise.
+/// Whether this is the name of a kind of warning; otherwise the help.
 ///
 /// # Errors
 /// The help for who wrote it.

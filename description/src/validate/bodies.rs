@@ -1,8 +1,8 @@
 //! Rigid bodies: no negative mass, no inertia that no distribution of mass has.
 //!
 //! The inertia tensor about the centre of mass is positive semidefinite: every principal minor is at least 0.
-//! For a body of ordinary matter the principal moments also satisfy the triangle inequality, lambda_1 + lambda_2 >= lambda_3, which is
-//! to say that tr(I)/2 · 1 - I is positive semidefinite; data sheets of planar arms give Izz alone, so that is a warning.
+//! For a body of ordinary matter the principal moments also satisfy the triangle inequality, lambda_1 + lambda_2 >= lambda_3. This
+//! means that tr(I)/2 · 1 - I is positive semidefinite. A violation is a warning, because data sheets of planar arms give Izz alone.
 
 use std::cmp::Ordering;
 
@@ -158,7 +158,7 @@ pub fn impossible_inertia(tensor: &[Number; 6]) -> Option<String> {
     negative_minor(tensor).map(|(reason, _)| reason)
 }
 
-/// A principal minor below 0: which, and the element to blame, if it is one.
+/// A principal minor below 0: its name, and the faulty element if only one is involved.
 fn negative_minor(tensor: &[Number; 6]) -> Option<(String, Option<usize>)> {
     let [xx, xy, yy, xz, yz, zz] = tensor;
     for element in [0, 2, 5] {
@@ -184,7 +184,7 @@ fn negative_minor(tensor: &[Number; 6]) -> Option<(String, Option<usize>)> {
     (determinant.sign() == Ordering::Less).then(|| ("its determinant is negative, so one principal moment is".to_owned(), None))
 }
 
-/// One warning for all bodies of which the file gives one moment alone.
+/// One warning for all bodies with a single moment.
 pub(super) fn warn_of_planar(context: &mut Context<'_>) {
     let mut planar = std::mem::take(&mut context.planar).into_iter();
     let Some((span, called)) = planar.next() else { return };

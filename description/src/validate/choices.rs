@@ -36,7 +36,7 @@ pub(super) fn task(description: &RobotDescription, diagnostics: &mut Diagnostics
 /// The word for the swivel angle.
 const SWIVEL: &str = "swivel";
 
-/// What inverse kinematics is asked for.
+/// The choices for inverse kinematics.
 pub(super) fn inverse_kinematics(description: &RobotDescription, diagnostics: &mut Diagnostics) -> Postures {
     let asked = &description.inverse_kinematics;
     let mut postures = Postures { target: asked.target.as_ref().map(|target| target.value), given: None };

@@ -118,7 +118,7 @@ fn rounded(value: f64, digits: i32) -> f64 {
     (value * scale).round() / scale
 }
 
-/// The row of a joint; faults are reported. `base`: what stands before the first one.
+/// The row of a joint; faults are reported. `base`: the pose before the first row.
 pub(super) fn row(
     joint: &JointDescription,
     called: &str,

@@ -14,7 +14,7 @@ use crate::exact::{Number, Polynomial};
 use crate::kinds::JointKind;
 use crate::manipulator::{Joint, Limits, LinkId, Motor, Pose, Spring, Stribeck};
 
-/// The joint; faults are reported. `base`: what stands before the first row.
+/// The joint; faults are reported. `base`: the pose before the first row.
 pub(super) fn joint(
     i: usize,
     description: &JointDescription,
@@ -151,7 +151,7 @@ fn limits(description: &LimitsDescription, kind: Option<JointKind>, called: &str
     Some(Limits { position: position?, velocity: velocity?, effort: effort? })
 }
 
-/// A limit of a size; `Some(None)` where there is none.
+/// A limit of a size; `Some(None)` without a limit.
 fn positive(value: Option<&Expression>, what: &str, called: &str, context: &mut Context<'_>) -> Option<Option<Number>> {
     let Some(value) = value else { return Some(None) };
     let number = context.number(value)?;

@@ -77,7 +77,7 @@ fn check_identifier(name: &Spanned<String>, what: &str, diagnostics: &mut Diagno
     }
 }
 
-/// What a reserved name means already.
+/// The existing meaning of a reserved name.
 fn reserved(name: &str) -> Option<&'static str> {
     if KEYWORDS.contains(&name) {
         return Some(if name == "_" { "a placeholder of Rust" } else { "a keyword of Rust" });

@@ -17,7 +17,7 @@ impl<'d> NominalValues<'d> {
         NominalValues(Parameters::resolve(description, Scalar::F64, &mut Diagnostics::new()))
     }
 
-    /// The value of an expression; `None` if it has none.
+    /// The value of an expression; `None` without a value.
     pub fn of(&self, expression: &Expression) -> Option<Number> {
         nominal(expression, &self.0).ok()
     }

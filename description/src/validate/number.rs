@@ -26,11 +26,11 @@ pub(super) type Evaluated<T> = Result<T, Option<Box<Diagnostic>>>;
 
 /// The values of names.
 pub(super) trait Nominals {
-    /// The value of a name, if it has one.
+    /// The value of a name, if it is known.
     fn nominal(&self, name: &str) -> Option<Number>;
 }
 
-/// The nominal value of `expression`, if it is one that the scalar can hold. `None`: there is none, which is reported here or was already.
+/// The nominal value of `expression`, if the scalar can hold it. `None`: the fault is reported, here or earlier.
 pub(super) fn number(
     expression: &Expression,
     nominals: &dyn Nominals,

@@ -38,19 +38,19 @@ pub(super) struct Entry<'d> {
     pub(super) name: &'d str,
     pub(super) span: Span,
     pub(super) value: Option<&'d Expression>,
-    /// Its value; `None` if there is none, which is reported.
+    /// Its value; `None` after a reported fault.
     pub(super) nominal: Option<Number>,
-    /// Its symbol, if it is one.
+    /// Its symbol, if it is a symbol of the equations.
     pub(super) symbol: Option<ParameterId>,
     /// Where and how it enters so that it must be a number.
     pub(super) number: Option<(Span, Reason)>,
     /// Whether it stands for the expression under it.
     pub(super) abbreviation: bool,
-    /// Where it stands in expressions.
+    /// Its occurrences in expressions.
     pub(super) uses: Vec<Occurrence>,
 }
 
-/// What a name stands in, as far as it says what was meant by one that is not defined.
+/// The context of a name, which helps to guess the meaning of an undefined name.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Within<'d> {
     /// The value of the parameter of this name.

@@ -1,4 +1,4 @@
-//! Where the parts of an arm stand in its file: what diagnostics about its equations point at.
+//! Places of the parts of an arm in its file, for diagnostics about its equations.
 
 pub use crate::description::Role;
 use crate::description::{RegressorDescription, RobotDescription};
@@ -13,17 +13,17 @@ pub struct Places {
     pub gravity: Span,
     /// Per joint.
     pub joints: Vec<JointPlaces>,
-    /// The key `task`, where the file has one.
+    /// The key `task`, if the file has it.
     pub task: Option<Span>,
     /// Its rows.
     pub task_rows: Vec<Span>,
-    /// The key `regressor`, where the file has one.
+    /// The key `regressor`, if the file has it.
     pub regressor: Option<Span>,
     /// The names that it lists, in its order.
     pub regressor_names: Vec<Span>,
     /// Definitions of the names that are symbols, by [`ParameterId`](crate::kinds::ParameterId).
     pub parameters: Vec<Span>,
-    /// Where these names stand in expressions, abbreviations included, by [`ParameterId`](crate::kinds::ParameterId).
+    /// Occurrences of the names in expressions, abbreviations included, by [`ParameterId`](crate::kinds::ParameterId).
     pub uses: Vec<Vec<Occurrence>>,
 }
 
@@ -45,7 +45,7 @@ pub struct JointPlaces {
 pub struct Occurrence {
     /// The name.
     pub span: Span,
-    /// What it is part of.
+    /// The quantity that it is a part of.
     pub role: Role,
 }
 

@@ -53,7 +53,7 @@ const OUTLYING: f64 = 5.0;
 const LEAD: f64 = 11_340.0;
 const LIGHT_ALLOY: f64 = 2700.0;
 const OF_LEAD_BALL: f64 = 0.5;
-/// So many other lengths tell what is usual on an arm.
+/// The fewest other lengths that show a usual length of the arm.
 const FEWEST_LENGTHS: usize = 3;
 const HEAVY_PART: f64 = 0.05;
 const REFLECTED: f64 = 3.0;
@@ -61,15 +61,15 @@ const LEAST_RATIO: f64 = 0.2;
 const FASTEST_TURN: f64 = 60.0;
 const FASTEST_SLIDE: f64 = 20.0;
 const DUST: f64 = 1e-9;
-/// Shorter arms, m, are those of examples: nothing follows from their size.
+/// Shorter arms, m, are examples: nothing follows from their size.
 const SMALL_REACH: f64 = 0.05;
-/// What a link spans beyond its frames and twice its centre of mass, m: flanges, housings, counterweights.
+/// The extent of a link beyond its frames and twice its centre of mass, m: flanges, housings, counterweights.
 const HOUSING: f64 = 0.2;
-/// Sizes of gravity, m/s², of bodies on which something has landed or may, and what they are.
+/// Sizes of gravity, m/s², of bodies where arms may work, and their names.
 const GRAVITIES: [f64; 10] = [1.352, 1.62, 3.7, 8.87, 9.81, 10.0, 8.69, 10.44, 11.15, 24.79];
 const GRAVITY_PART: f64 = 0.02;
 
-/// What is said of all joints at once.
+/// Data about all joints together.
 struct Arm<'d> {
     joints: &'d [JointDescription],
     /// |a| + |d| of each row, m.
@@ -78,7 +78,7 @@ struct Arm<'d> {
     strokes: Vec<f64>,
     /// Sum of all |a| and |d| and of the tool, and of strokes where these are next to nothing; m.
     reach: f64,
-    /// Of all links, kg.
+    /// Masses of all links, kg.
     masses: Vec<f64>,
 }
 
@@ -89,7 +89,7 @@ struct Body<'b> {
     mass: f64,
     /// How messages call it.
     whose: String,
-    /// Whose frame its numbers are in.
+    /// The owner of the frame of its numbers.
     frame: &'static str,
     /// How far its centre of mass can be from there, m: the arm is as long.
     farthest: f64,
@@ -155,7 +155,7 @@ pub(super) fn check(description: &RobotDescription, context: &mut Context<'_>) {
     }
 }
 
-/// The length of a pose's translations, m; angles and lengths that are next to nothing are told of.
+/// The length of a pose's translations, m; warns of tiny angles and lengths.
 fn translation(pose: &PoseDescription, what: &str, context: &mut Context<'_>) -> f64 {
     let mut whole = 0.0;
     for element in &pose.elements {
@@ -177,7 +177,7 @@ fn stroke(joint: &JointDescription, context: &mut Context<'_>) -> f64 {
     }
 }
 
-/// The value in the description; 0 where there is none.
+/// The value in the description; 0 if absent.
 fn number(value: &Value, context: &mut Context<'_>) -> f64 {
     value.as_ref().and_then(|expression| context.number(expression)).map_or(0.0, |number| number.to_f64())
 }
@@ -512,7 +512,7 @@ impl Arm<'_> {
         gyration > span || too_small
     }
 
-    /// Whether the tensor of a link is one that templates have: three equal moments, a power of ten or those of another link.
+    /// Whether the tensor of a link comes from a template: three equal moments, each a power of ten or shared with another link.
     fn has_placeholder(&self, link: &BodyDescription, context: &mut Context<'_>) -> bool {
         let [xx, yy, zz] = moments(link, context);
         let links = self.joints.iter().filter_map(|joint| joint.link.as_ref());
@@ -521,7 +521,7 @@ impl Arm<'_> {
         }
     }
 
-    /// What the link of joint `i` can span, m: from the joint before it to the one after it, and about its centre of mass.
+    /// The span of the link of joint `i`, m: from the joint before it to the one after it, and about its centre of mass.
     fn span(&self, i: usize, com: f64) -> f64 {
         let part = |i: usize| self.lengths.get(i).unwrap_or(&0.0) + self.strokes.get(i).unwrap_or(&0.0);
         part(i) + part(i + 1) + 2.0 * com + HOUSING

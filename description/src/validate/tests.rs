@@ -9,7 +9,7 @@ fn read(source: &Source) -> (Option<(Manipulator, Places)>, Diagnostics) {
     structure(source, Scalar::F64).finish()
 }
 
-/// A one-joint arm; `edits` replace parts of it, and what is not found is appended.
+/// A one-joint arm; `edits` replace parts of it, and an edit without a match is appended.
 fn arm(edits: &[(&str, &str)]) -> String {
     let mut text = "name: arm\nconvention: standard\ngravity: [0, 0, -9.81]\nparameters: {}\njoints:\n  - name: shoulder\n    \
                     type: revolute\n    a: 0.5\n    alpha: pi/2\n    d: 0.25\n    theta: 0\n    link: {mass: 2}\n"
@@ -394,7 +394,7 @@ fn a_heavy_last_link_is_doubted_where_its_inertia_or_its_size_does_not_bear_it()
     check_values(&torso(17, 0.01, 0.3), &[Code::ImplausibleMass]);
 }
 
-/// What is said first of an arm.
+/// The first message about an arm.
 fn said_first(text: &str) -> String {
     let source = Source::new("robot.yaml", text);
     read(&source).1.render(&source, Colour::Never).split("\n\n").next().unwrap_or_default().to_owned()
@@ -538,7 +538,7 @@ fn expressions_are_in_the_unit_as_a_whole() {
     check(&with(&[("alpha: pi/2", "alpha: t + 0"), ("theta: 0", "theta: deg(w)"), ("a: 0.5", "a: l")]), &[]);
 }
 
-/// What is suggested has every digit.
+/// A suggestion has every digit.
 #[test]
 fn suggestions_lose_no_digit() {
     let helps = |text: &str| {

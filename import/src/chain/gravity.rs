@@ -1,4 +1,4 @@
-//! Gravity: given in the axes of the root link, written in those of the base link.
+//! Gravity: read in the axes of the root link, written in the axes of the base link.
 
 use armgen_codegen::exact::{Angle, Number, Rational};
 

@@ -28,13 +28,13 @@ pub(crate) struct Lock {
 }
 
 impl Lock {
-    /// Of a joint that stands at 0.
+    /// The lock of a joint at 0.
     pub(crate) fn at_zero(joint: &Joint) -> Lock {
         Lock { joint: joint.name.clone(), text: "0".into(), value: 0.0, span: joint.span }
     }
 }
 
-/// What the user holds.
+/// The joints that the user locks.
 pub(crate) struct Locks {
     by_joint: BTreeMap<usize, Lock>,
 }
@@ -98,7 +98,7 @@ impl Locks {
     }
 }
 
-/// Where a joint beside the chain that is not held stands by what it follows.
+/// The value of an unlocked joint outside the chain that follows others.
 #[derive(Clone, Debug)]
 pub(super) enum Led {
     At(Lock),
@@ -109,7 +109,7 @@ pub(super) enum Led {
 }
 
 impl Builder<'_> {
-    /// Where a joint beside the chain stands that is not locked: at 0, or where the joints that it follows make it stand.
+    /// The value of an unlocked joint outside the chain: 0, or the value given by the joints that it follows.
     pub(super) fn following(&mut self, index: usize) -> Option<Lock> {
         let (tree, format) = (self.tree, self.format);
         let (mut way, mut at) = (Vec::new(), index);

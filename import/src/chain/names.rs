@@ -1,6 +1,6 @@
 //! What names of links and joints are about: frames of tools, and fingers.
 
-/// Words of names of a tool's frame, the likeliest first; those of two words stand together.
+/// Words of names of a tool's frame, the likeliest first; a name may need two adjacent words.
 const TOOLS: [&[&str]; 16] = [
     &["tcp"],
     &["tool0"],

@@ -10,7 +10,7 @@ use crate::tree::{Role, Tree};
 use crate::xml::shown;
 use crate::Code;
 
-/// So many names in a message.
+/// The most names in a message.
 const NAMED: usize = 12;
 
 /// A link that may be the tip.

@@ -1,15 +1,15 @@
 //! Joint axes as lines, and the rows that their common normals make.
 //!
-//! Line k goes through a point along a unit vector u_k; line 0 is the z axis of the base, line n + 1 that of the end effector. x_k is the unit normal
-//! from line k to line k + 1, f_k its foot on k, f'_{k+1} on k + 1:
+//! Line k goes through a point along a unit vector u_k. Line 0 is the z axis of the base, line n + 1 the z axis of the end effector.
+//! x_k is the unit normal from line k to line k + 1, f_k its foot on k, f'_{k+1} its foot on k + 1:
 //!
 //! ```text
 //! a_k = (f'_{k+1} - f_k)·x_k      alpha_k = atan2(x_k·(u_k × u_{k+1}), u_k·u_{k+1})
 //! d_k = (f_k - f'_k)·u_k          theta_k = atan2(u_k·(x_{k-1} × x_k), x_{k-1}·x_k)
 //! ```
 //!
-//! Where lines meet, x_k is ± the cross product with theta_k in (-pi/2, pi/2]; where they are parallel, d_k = 0; where they are one, theta_k = 0 as
-//! well. Of a slide only the direction counts: its line goes through f_k. Every test is exact.
+//! If lines meet, x_k is ± the cross product with theta_k in (-pi/2, pi/2]. If they are parallel, d_k = 0; if they coincide, theta_k = 0 as
+//! well. A slide has only a direction: its line goes through f_k. Every test is exact.
 //!
 //! Source: J. Denavit and R. S. Hartenberg, *A Kinematic Notation for Lower-Pair Mechanisms Based on Matrices*, J. Appl. Mech. 22 (1955).
 
@@ -36,7 +36,7 @@ pub(super) struct Normal {
     pub(super) twist: (Number, Number),
     /// d_k; of the base the coordinate of f_0, of the end effector that of its origin from f'.
     pub(super) offset: Number,
-    /// Sine and cosine of theta_k; of the base and the end effector those of the angle from x_0 to the base's, and from x_n to its own.
+    /// Sine and cosine of theta_k. Base and end effector have the angle from x_0 to the base's x axis, and from x_n to its own.
     pub(super) turn: (Number, Number),
     /// In the joint's frame, the frames with x along x_k: at f_k with z along line k, and at f'_{k+1} with z along line k + 1.
     pub(super) near: Placement,

@@ -17,7 +17,7 @@ pub(super) struct Element<'a, 'i> {
     pub(super) class: Option<&'a str>,
 }
 
-/// A class: what the `default` elements of its name give, by element and attribute, and the class around it.
+/// A class: the values of the `default` elements of its name, by element and attribute, and the enclosing class.
 #[derive(Default)]
 struct Class<'a> {
     given: BTreeMap<(&'a str, &'a str), (&'a str, Span)>,

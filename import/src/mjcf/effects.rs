@@ -1,4 +1,4 @@
-//! What a description of a serial arm does not hold: refused where it would move the arm otherwise, counted where not.
+//! Elements that a description of a serial arm cannot hold: refused if they would change the motion, otherwise counted.
 
 use std::collections::BTreeMap;
 
@@ -30,7 +30,7 @@ pub(super) fn refuse_macros(root: Node<'_, '_>, diagnostics: &mut Diagnostics) {
     }
 }
 
-/// Settings of the compiler by which bodies are not what the file says of them.
+/// Settings of the compiler that change the bodies of the file.
 pub(super) fn refuse_changed_inertias(compiler: Node<'_, '_>, diagnostics: &mut Diagnostics) {
     let positive = |text: &str| text.trim().parse::<f64>().is_ok_and(|value| value > 0.0);
     for (name, is_set) in [
@@ -56,7 +56,7 @@ pub(super) struct Disabled {
     pub(super) equality: bool,
 }
 
-/// What the flags of a model switch off; of several the last one holds. Constraints are friction losses and equalities, too.
+/// The effects that the flags of a model switch off; the last of several equal flags holds. Constraints are friction losses and equalities, too.
 pub(super) fn disabled(root: Node<'_, '_>, diagnostics: &mut Diagnostics) -> Disabled {
     let mut off: BTreeMap<&str, bool> = BTreeMap::new();
     let flags = sections(root, "option").flat_map(|option| option.children()).filter(|node| node.has_tag_name("flag"));
@@ -128,7 +128,7 @@ pub(super) fn refuse_springs<'a, 'i>(mjcf: &Mjcf<'a, 'i>, joint: Element<'a, 'i>
     }
 }
 
-/// Bodies that do not weigh what they weigh, or stand where they are put.
+/// Bodies with compensated gravity, and bodies that a motion capture places.
 pub(super) fn refuse_compensation(body: Node<'_, '_>, values: &mut Values<'_>) {
     if let Some((text, span)) = attribute(body, "gravcomp").filter(|(text, _)| text.trim().parse::<f64>() != Ok(0.0)) {
         let message = format!("gravity is compensated at a body of the arm: `gravcomp` is {}", shown(text));
@@ -194,7 +194,7 @@ pub(super) fn check(mjcf: &Mjcf<'_, '_>, extent: &Extent<'_>, diagnostics: &mut 
     }
 }
 
-/// Elements by what they are, or by the section that they stand in.
+/// Counts of elements by their kind, or by their section.
 pub(super) fn left_out(root: Node<'_, '_>) -> BTreeMap<String, usize> {
     const READ: [&str; 4] = ["compiler", "option", "default", "worldbody"];
     const TAKEN: [&str; 6] = ["body", "frame", "joint", "freejoint", "inertial", "site"];

@@ -82,7 +82,7 @@ impl<'a, 'i> Mjcf<'a, 'i> {
         child(body, "inertial").filter(|_| !replaced)
     }
 
-    /// The first geometry of a body's inertia whose mass distribution has no formula: what it is.
+    /// The kind of the first geometry of a body's inertia whose mass distribution has no formula.
     pub(super) fn without_formula(&self, body: Node<'a, 'i>) -> Option<String> {
         self.made_of(body).into_iter().find_map(|element| {
             let kind = self.kind_of_geometry(element);
@@ -187,7 +187,7 @@ impl<'a, 'i> Mjcf<'a, 'i> {
         Some(Part { name: Some(name), frame, body })
     }
 
-    /// The poses of the frames between a body and what stands in it.
+    /// The poses of the frames between a body and an element in it.
     fn frames_around(&self, node: Node<'a, 'i>, body: Node<'a, 'i>, values: &mut Values<'_>) -> Vec<Pose> {
         let mut frames: Vec<Node<'a, 'i>> = node.ancestors().skip(1).take_while(|outer| *outer != body).collect();
         frames.reverse();

@@ -7,7 +7,7 @@ use roxmltree::Node;
 use super::sections;
 use crate::unread;
 
-/// What stands in `worldbody`, a body or a frame.
+/// The elements in `worldbody`, in a body or in a frame.
 const INSIDE: &[&str] = &[
     "body",
     "frame",
@@ -118,7 +118,7 @@ const ATTRIBUTES_OF: [(&str, &[&str]); 10] = [
     ]),
 ];
 
-/// A body has one.
+/// The elements that a body has once.
 const SINGLE: [(&str, &[&str]); 1] = [("body", &["inertial"])];
 
 /// Warns of what nothing reads of the sections that are read.

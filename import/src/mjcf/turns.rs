@@ -14,7 +14,7 @@ use crate::Code;
 const WRITINGS: [&str; 5] = ["quat", "axisangle", "xyaxes", "zaxis", "euler"];
 
 impl<'a, 'i> Mjcf<'a, 'i> {
-    /// The rotation of an element as one or more, one after another; none where it has none.
+    /// The rotation of an element as a sequence of rotations; empty without a rotation.
     pub(super) fn turns(&self, element: Element<'a, 'i>, what: &str, values: &mut Values<'_>) -> Vec<Turn> {
         let mut given = WRITINGS.into_iter().filter_map(|name| Some((name, self.classes.attribute(element, name)?)));
         let Some((name, (text, span))) = given.next() else { return Vec::new() };

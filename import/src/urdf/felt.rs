@@ -14,13 +14,13 @@ use crate::Code;
 
 /// Words of a name that stand for inertia, gears, springs and damping.
 const WORDS: [&str; 9] = ["inertia", "ratio", "stiffness", "damping", "damper", "rotor", "spring", "armature", "compliance"];
-/// Elements of Gazebo by which links are others, or weigh nothing.
+/// Elements of Gazebo that change links or their weight.
 const NAMES: [&str; 4] = ["disableFixedJointLumping", "preserveFixedJoint", "gravity", "turnGravityOff"];
 /// Elements in which such words are about something else: looks, contacts, sensors.
 const ELSEWHERE: [&str; 6] = ["visual", "collision", "material", "sensor", "surface", "ros2_control"];
 /// Elements that are read.
 const READ: [&str; 4] = ["inertial", "dynamics", "limit", "mimic"];
-/// So many values in a message.
+/// The most values in a message.
 const NAMED: usize = 12;
 
 /// Warns of them where they concern the arm, once for each name, with values.

@@ -1,4 +1,4 @@
-//! Arms, and what they are in floats.
+//! Arms, and their values in floats.
 
 use std::path::{Path, PathBuf};
 

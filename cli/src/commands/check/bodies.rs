@@ -1,5 +1,4 @@
-//! What the bodies of an arm look like as solids: where their mass is, and along which of their axes and how far it spreads, in sizes of which a reader
-//! can judge.
+//! The bodies of an arm as solids: the places of their masses, and their extent along each axis, in sizes that a reader can judge.
 
 use std::collections::BTreeMap;
 
@@ -44,9 +43,9 @@ impl Solid {
         Some(Solid { mass, com, inertia: inertia.sum() })
     }
 
-    /// The principal moments, each at the axis of the frame that its own axis is next to, and the turn from an axis of the frame to the principal
-    /// axis next to it that is the largest: a vector along the axis of the turn, as long as its angle in degrees. An axis between two equal moments
-    /// can be drawn anywhere: it is not turned.
+    /// The principal moments, each at the axis of the frame nearest to its own axis, and the largest turn from an axis of the frame to its
+    /// principal axis. The turn is a vector along its axis, as long as its angle in degrees. The axes of equal moments are arbitrary, so
+    /// they are not turned.
     fn moments(&self) -> ([f64; 3], Vector3<f64>) {
         let principal = SymmetricEigen::new(self.inertia);
         let along = |k: usize, axis: usize| principal.eigenvectors[(axis, k)].abs();
@@ -98,7 +97,7 @@ fn carriers(manipulator: &Manipulator) -> impl Iterator<Item = (String, &[Placed
     links.chain(manipulator.payload.iter().map(|load| ("payload".into(), std::slice::from_ref(load))))
 }
 
-/// Mass and centre of mass, one row per link and one of the load. `distances` are those of the links, as `posture::distances` gives them.
+/// Mass and centre of mass, one row per link and one of the load. `distances` of the links come from `posture::distances`.
 pub(super) fn masses(manipulator: &Manipulator, distances: &[[Option<f64>; 2]]) -> String {
     use Align::{Left, Point};
     let mut masses = Table::new([
@@ -127,8 +126,8 @@ pub(super) fn masses(manipulator: &Manipulator, distances: &[[Option<f64>; 2]]) 
     }
 }
 
-/// What the inertias say; none where nothing has mass. A link's moments stand in the order of its own axes, not of their size: two that were exchanged
-/// are seen in the sides of the box.
+/// The inertias; `None` for an arm without mass. A link's moments have the order of its own axes, not of their size, so exchanged moments
+/// show in the sides of the box.
 pub(super) fn inertias(manipulator: &Manipulator) -> Option<String> {
     use Align::{Left, Point};
     let mut inertias = Table::new([
@@ -171,7 +170,7 @@ const TURNED: &str = "turned";
 const GYRATION: &str = "gyration (m)";
 const DENSITY: &str = "kg/m³";
 
-/// What the columns of the masses are.
+/// The meaning of the columns of the masses.
 fn of_masses(masses: &Table, manipulator: &Manipulator) -> String {
     let if_shown = |column: &str, words| if masses.shows(column) { words } else { "" };
     legend(&[
@@ -185,7 +184,7 @@ fn of_masses(masses: &Table, manipulator: &Manipulator) -> String {
     ])
 }
 
-/// What the columns of the inertias are.
+/// The meaning of the columns of the inertias.
 fn of_inertias(inertias: &Table) -> String {
     let if_shown = |column: &str, words| if inertias.shows(column) { words } else { "" };
     legend(&[
@@ -197,8 +196,8 @@ fn of_inertias(inertias: &Table) -> String {
     ])
 }
 
-/// The sides of the homogeneous cuboid with these moments about its centre: I_x = m (y² + z²) / 12. None has those of a body that breaks the triangle
-/// inequality.
+/// The sides of the homogeneous cuboid with these moments about its centre: I_x = m (y² + z²) / 12. A body that violates the triangle
+/// inequality has no such cuboid.
 fn sides(mass: f64, moments: &[f64; 3]) -> [String; 3] {
     let sum: f64 = moments.iter().sum();
     if sum == 0.0 {

@@ -1,8 +1,8 @@
-//! What a motion can tell about the parameters.
+//! The parameters that a motion can identify.
 //!
 //! Torques measured along a motion determine pi only through Y pi. A column of Y that is a combination of others, Y_d = Σ k_i Y_i for every
-//! state, adds nothing: only the sums pi_i + Σ k_i pi_d act on the torques, and only they can be identified, whatever the motion
-//! (Siciliano et al., Sect. 7.2.2 and 7.4).
+//! state, adds nothing. Only the sums pi_i + Σ k_i pi_d act on the torques, so no motion identifies more (Siciliano et al., Sect. 7.2.2
+//! and 7.4).
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -30,8 +30,8 @@ pub(super) fn report(model: &Model) -> String {
     of_regressor(model, rank) + &of_base_regressor(model, base.len(), rank, has_all)
 }
 
-/// How many columns of `all` base parameters `base_regressor` has, where it has fewer than the `rank` that a motion can identify. (Of all there are
-/// more where they keep friction apart.) `has_all`: whether the description chose the regressor that has them.
+/// A line about `base_regressor` if it has fewer columns than the `rank` that a motion can identify. `all` counts all base parameters; it
+/// is larger than the rank if they keep friction apart. `has_all`: whether the description chose the regressor with all of them.
 fn of_base_regressor(model: &Model, all: usize, rank: usize, has_all: bool) -> String {
     let own = model.base_parameters().len();
     if own >= rank {

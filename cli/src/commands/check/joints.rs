@@ -1,4 +1,4 @@
-//! The rows of an arm as written, with the values of their names, and beside them what limits and drives its joints.
+//! The rows of an arm as written, with the values of their names, and the limits and drives of its joints.
 
 use armgen_codegen::derive::parameters::{denavit_hartenberg, nominal};
 use armgen_codegen::description::{
@@ -13,7 +13,7 @@ use super::{decimal, digits};
 use crate::table::Align::{Left, Right};
 use crate::table::Table;
 
-/// One line per joint: the row as written; what stands before the first and after the last one.
+/// One line per joint: the row as written; and the poses before the first and after the last row.
 pub(super) fn rows(source: &Source, description: &RobotDescription, manipulator: &Manipulator) -> String {
     let mut table = Table::new([
         ("joint", Left),
@@ -72,7 +72,7 @@ fn dh_row(source: &Source, row: &JointDescription, i: usize, manipulator: &Manip
     texts
 }
 
-/// What stands in the file, in one line, without comments.
+/// A text of the file in one line, without comments.
 fn in_one_line(text: &str) -> String {
     let words = |line: &'_ str| -> Vec<String> {
         line.split_whitespace().take_while(|word| !word.starts_with('#')).map(str::to_owned).collect()
@@ -104,7 +104,7 @@ fn pose(source: &Source, pose: &PoseDescription) -> String {
     elements.filter(|text| !text.is_empty()).collect::<Vec<_>>().join(", ")
 }
 
-/// The limits of the joints, angles in degrees as well; nothing where there are none.
+/// The limits of the joints, angles also in degrees; `None` without limits.
 pub(super) fn limits(manipulator: &Manipulator) -> Option<String> {
     let mut table =
         Table::new([("limits", Left), ("position", Left), ("", Left), ("velocity", Right), ("", Left), ("effort", Right)]);
@@ -195,7 +195,7 @@ fn drive(i: usize, joint: &Joint, manipulator: &Manipulator) -> [String; 12] {
 mod tests {
     use super::*;
 
-    /// A name's value stands behind it, whatever `base` puts before the first row.
+    /// A name's value follows it, also in the `base` before the first row.
     #[test]
     fn values_are_those_of_the_row() {
         for convention in ["standard", "modified"] {

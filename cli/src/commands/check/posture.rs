@@ -1,5 +1,5 @@
-//! The arm at q = 0: where its frames, axes and centres of mass are, and what gravity asks of its joints. A sign, a row or a frame that is wrong in
-//! the file is seen here beside a drawing.
+//! The arm at q = 0: its frames, axes and centres of mass, and the gravity torques of its joints. A comparison with a drawing shows a wrong
+//! sign, row or frame of the file.
 //!
 //! ```text
 //! T_i = T_(i-1) * before_i * motion_i(q_i) * after_i                link frame i in the base frame (Siciliano et al., Eq. 2.50)
@@ -16,10 +16,10 @@ use super::bodies::{short, Solid};
 use super::digits;
 use crate::table::{Align, Table};
 
-/// What is below this beside 1 is rounding.
+/// Smaller numbers are rounding, compared with 1.
 const ROUNDING: f64 = 1e-9;
 
-/// The frames of an arm as numbers: what lies before and behind the motion of each joint, and its axis.
+/// The frames of an arm as numbers: the poses before and after the motion of each joint, and its axis.
 pub(super) struct Frames {
     joints: Vec<Step>,
     tip: usize,
@@ -108,7 +108,7 @@ impl Posture {
         Posture::placed(manipulator, &self.links[link], &manipulator.joints[link].link)
     }
 
-    /// What a link carries: itself, the load, and the rotors of the joints after it.
+    /// The masses on a link: itself, the load, and the rotors of the joints after it.
     fn masses<'a>(&'a self, manipulator: &'a Manipulator, link: usize) -> impl Iterator<Item = (f64, Point3<f64>)> + 'a {
         let is_here = move |id: LinkId| id.0 as usize == link;
         let load = manipulator.payload.iter().filter(move |_| is_here(manipulator.tip));
@@ -285,7 +285,7 @@ mod tests {
         assert!(text.contains("end effector") && text.contains("(1, 0, 0.25)"), "{text}");
     }
 
-    /// 10 m/s² at 1 kg, 1 m beside the axis: 10 N m.
+    /// 10 m/s² at 1 kg, 1 m from the axis: 10 N m.
     #[test]
     fn an_effort_limit_below_what_is_held_is_said() {
         let of = |effort: &str| {

@@ -1,4 +1,4 @@
-//! Units: those that a file names for its values, and those behind numbers, where values have none.
+//! Units: a file may name units for its values; a unit after a number is a fault, and the help converts it.
 
 use crate::exact::Rational;
 
@@ -179,12 +179,12 @@ const UNITS: &[(&str, To, &str)] = &[
     ("kHz", To::Power(3), "1/s"),
 ];
 
-/// Units of a torque with kgf or gf for which kg or g is written: without the square they are those of an inertia. The factors to N m, the
-/// powers of ten to kg m², and the inertia that may be meant.
+/// Units that may be a torque with kg or g for kgf or gf, or an inertia without its square. Each has the factor to N m, the power of ten
+/// to kg m², and the unit of the inertia.
 const TORQUES_OR_INERTIAS: [(&str, &str, i32, &str); 3] =
     [("kgm", "9.80665", 0, "kg m²"), ("kgcm", "0.0980665", -4, "kg cm²"), ("gcm", "9.80665e-5", -7, "g cm²")];
 
-/// What to write instead of `before` and a unit, if `rest` is one. Where more than a number stands before it, what the unit belongs to is not
+/// The replacement of `before` and a unit, if `rest` is a unit. After more than a number, the operand of the unit is unknown and not
 /// guessed.
 pub(super) fn without(before: &str, rest: &str) -> Option<String> {
     let unit = squeezed(rest);
@@ -231,7 +231,7 @@ pub(super) fn without(before: &str, rest: &str) -> Option<String> {
     })
 }
 
-/// What is said of a unit that is none of those above, if it is a quotient of them such as `kg/m`.
+/// The help for a quotient of the units above, such as `kg/m`, that is not itself in the table.
 pub(super) fn compound(rest: &str) -> Option<String> {
     let mut parts = rest.trim().split('/').map(squeezed);
     let is_unit = |part: &String| UNITS.iter().any(|(name, ..)| name == part);

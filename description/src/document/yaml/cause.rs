@@ -1,4 +1,4 @@
-//! Where a text went wrong that is no YAML: the reader stumbles later than the slip, or says what it lacks and not what was meant.
+//! The cause of a syntax error: the parser often stops later than the slip, or reports a missing character instead of the slip.
 
 use serde_yaml::granit_parser::ErrorKind;
 
@@ -19,8 +19,8 @@ impl Cause {
     }
 }
 
-/// A quoted text that goes over lines, whose closing quote stands before `at` in its line: it closes with the quote that opens another text, and what
-/// it lacks is the one in its own line.
+/// A quoted text over several lines whose closing quote comes before `at` in its line. That quote was meant to open another text:
+/// the closing quote is missing in the first line.
 pub(super) fn unclosed_quote(text: &str, at: usize) -> Option<Cause> {
     let before = text.get(..at)?;
     let line = before.rfind('\n').map_or(0, |end| end + 1);
@@ -28,8 +28,9 @@ pub(super) fn unclosed_quote(text: &str, at: usize) -> Option<Cause> {
     Some(Cause::of(Span::new(opened, opened + 1), &ErrorKind::UnclosedQuotedScalar))
 }
 
-/// The likely cause of a parse error that surfaced at `at`, if it can be found: a quote that was opened above, a tab in the indentation of
-/// the line or of one beside it, a dash or a colon without a space, a missing dash, a line in a column of its own, a key without a colon.
+/// The likely cause of a parse error that surfaced at `at`, if this function finds it. Causes are an open quote above, and a tab in the
+/// indentation of this or a neighbouring line. Others are a dash or a colon without a space, a missing dash, a line in a column of
+/// its own, and a key without a colon.
 pub(super) fn find(text: &str, at: usize, kind: &ErrorKind) -> Option<Cause> {
     use ErrorKind as E;
     match kind {
@@ -67,7 +68,7 @@ fn indentation(line: &str) -> usize {
     line.len() - line.trim_start_matches(' ').len()
 }
 
-/// Whether something stands in a line beside a comment.
+/// Whether a line has text other than a comment.
 fn has_content(line: &str) -> bool {
     !line.trim_start().is_empty() && !line.trim_start().starts_with('#')
 }
@@ -85,7 +86,7 @@ fn begins_with_dash(line: &str) -> bool {
     matches!(line.trim_start().strip_prefix('-'), Some(rest) if rest.is_empty() || rest.starts_with(' '))
 }
 
-/// The column of a line's key: after the dash, where there is one.
+/// The column of a line's key: after the dash, if the line has a dash.
 fn key_column(line: &str) -> usize {
     let rest = line.trim_start();
     let after = if begins_with_dash(line) { rest[1..].trim_start() } else { rest };
@@ -215,7 +216,7 @@ fn lines(text: &str) -> Vec<(usize, &str)> {
     starts.into_iter().zip(text.split_inclusive('\n').map(str::trim_end)).collect()
 }
 
-/// A tab before what stands in the line of `at` or in one beside it.
+/// A tab before the text of the line of `at` or of a neighbouring line.
 fn tab_beside(text: &str, at: usize) -> Option<Cause> {
     let lines = lines(text);
     let here = lines.partition_point(|(start, _)| *start <= at).checked_sub(1)?;
@@ -226,7 +227,7 @@ fn tab_beside(text: &str, at: usize) -> Option<Cause> {
     })
 }
 
-/// A character that looks like a blank and is none, in the line or in the one above: a key or an indentation that was pasted with it.
+/// A character that only looks like a blank, in this line or the line above: part of a pasted key or indentation.
 fn invisible_beside(lines: &[(usize, &str)], here: usize) -> Option<Cause> {
     [Some(here), above(lines, here)].into_iter().flatten().find_map(|i| {
         let (start, line) = lines[i];

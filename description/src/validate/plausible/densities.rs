@@ -1,8 +1,8 @@
 //! Inertias of all links that are too large or too small by a factor which none of them alone betrays.
 //!
-//! A body with mass m and the tensor I about its centre of mass is as wide as the cuboid of even density whose sides have the squares
-//! s_k = 6 (tr I - 2 I_k) / m, I_k its principal moments; so their product is the determinant of 6 (tr I 1 - 2 I) / m, and the density is m over its
-//! root. With all tensors ten times as large it is 32 times as small.
+//! A body has mass m and the tensor I about its centre of mass, with principal moments I_k. The cuboid of even density with the same
+//! tensor has sides with the squares s_k = 6 (tr I - 2 I_k) / m. Their product is the determinant of 6 (tr I 1 - 2 I) / m, and the
+//! density is m over its root. With all tensors ten times as large it is 32 times as small.
 
 use super::{number, short, Arm, LEAD};
 use crate::description::BodyDescription;
@@ -16,7 +16,7 @@ const WATER: f64 = 1000.0;
 /// kg/m³: the lightest foam of packaging, and the densest metal.
 const LIGHTEST_FOAM: f64 = 20.0;
 const OSMIUM: f64 = 22_600.0;
-/// So many bodies have a median that says something.
+/// The fewest bodies with a meaningful median.
 const FEWEST: usize = 3;
 /// Beside the cube of the sum of the squared sides their product is 0: a plate, a rod.
 const FLAT: f64 = 1e-7;
@@ -85,8 +85,8 @@ pub fn density_of_cuboid(mass: f64, tensor: [f64; 6]) -> Option<f64> {
     is_a_solid.then(|| mass / volume.sqrt())
 }
 
-/// What is doubtful about the density of the cuboid of one body, kg/m³: nothing is as light or as dense. It is said beside the body, and no warning:
-/// files that are much in use have such a link or two, and work.
+/// The doubt about the density of the cuboid of one body, kg/m³: no material is as light or as dense. Tables show it with the body, and
+/// it is not a warning, because files in wide use have such a link or two, and work.
 pub fn doubt_of_density(density: f64) -> Option<&'static str> {
     match density {
         _ if density < LIGHTEST_FOAM => Some("lighter than foam"),

@@ -20,7 +20,7 @@ const STRONGEST: f64 = 300.0;
 const FADED_BY: [f64; 2] = [10.0, 1.0];
 /// rad/s: a whole multiple of five from here on is a number of degrees per second.
 const ROUND_RATE: f64 = 30.0;
-/// So many times as fast as every other joint is in another unit.
+/// A joint this many times as fast as every other has a rate in another unit.
 const OUTLYING_RATE: f64 = 8.0;
 
 fn turns(joint: &JointDescription) -> bool {
@@ -74,7 +74,7 @@ impl Arm<'_> {
         }
     }
 
-    /// What is added to a joint's own entry of B, beside the whole arm at its reach.
+    /// The addition to a joint's own entry of B, against the inertia of the whole arm at its reach.
     fn check_armature(&self, joint: &JointDescription, called: &str, context: &mut Context<'_>) {
         let Some(expression) = &joint.armature else { return };
         let (armature, total) = (number(&joint.armature, context), self.masses.iter().sum::<f64>());
@@ -130,7 +130,7 @@ impl Arm<'_> {
         }
     }
 
-    /// Friction and efforts beside the weight of the arm.
+    /// Friction and efforts against the weight of the arm.
     pub(super) fn check_sizes(&self, joint: &JointDescription, called: &str, context: &mut Context<'_>) {
         let (weight, turns) = (self.weight(joint), turns(joint));
         let unit = if turns { "N m" } else { "N" };

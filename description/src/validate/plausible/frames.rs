@@ -1,4 +1,4 @@
-//! Numbers that look as if they were given in another frame than the one that is asked for.
+//! Numbers that seem to refer to another frame than the required one.
 //!
 //! | kind | warns of | since |
 //! |---|---|---|
@@ -16,8 +16,8 @@ use crate::validate::{call, Context};
 
 /// How nearly axes are one line: the sine of the angle between them, and m.
 const ONE_LINE: f64 = 1e-9;
-/// How nearly the products are those of Steiner's theorem, as a part of the largest of these: where there are several, and where there is one alone,
-/// which comes as near by chance.
+/// The tolerance of the comparison with Steiner's theorem, relative to the largest product: for several products, and for a single
+/// product, which may agree by chance.
 const NEARLY: f64 = 0.05;
 const NEARLY_ALONE: f64 = 0.01;
 /// Products smaller than this part of the largest moment say nothing.
@@ -51,7 +51,7 @@ impl Arm<'_> {
     }
 }
 
-/// A tensor about the origin of the frame where one about the centre of mass is asked for.
+/// A tensor about the origin of the frame instead of the centre of mass.
 pub(super) fn check_reference(body: &Body<'_>, context: &mut Context<'_>) {
     let (Some(com), Some(inertia)) = (&body.description.com, &body.description.inertia) else { return };
     if inertia.rotation.is_some() {

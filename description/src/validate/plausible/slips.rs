@@ -71,7 +71,7 @@ pub(super) fn likely_tensors(
     units.into_iter().filter_map(|(factor, unit)| Some((unit.trim_start_matches("in "), text(factor)?))).collect()
 }
 
-/// The one element of which a power of ten, and of no other element another, makes the tensor one of a body: its name and what to write.
+/// The only element that a power of ten can change so that the tensor belongs to a body: its name and its new value.
 pub(super) fn single_slip(
     inertia: &InertiaDescription,
     mass: f64,
