@@ -1,11 +1,10 @@
 #!/usr/bin/env python3
-"""Counts the operations that each pass saves, and writes the first table of docs/passes.md.
+"""Counts the operations that each pass saves, and writes results/passes.csv; docs/passes.md repeats its first and its last line.
 
     cargo build --release -p armgen && benches/passes.py
 """
 
 import json
-import re
 import subprocess
 import sys
 from pathlib import Path
@@ -25,23 +24,15 @@ def count(robot, without):
 
 
 def main():
-    index = (ROOT / "docs/passes.md").read_text()
-    passes = re.findall(r"^\| without `([a-z-]+)` \| \d+ \| \d+ \| \d+ \| \d+ \| \d+ \|", index, flags=re.M)
-    everything = {robot: count(robot, []) for robot in ROBOTS}
-    shown = [(robot, k) for robot in ROBOTS for k in range(len(COLUMNS))]
-    titles = list(COLUMNS.values())
-    row = lambda title, of: f"| {title} | {' | '.join(str(of[robot][k]) for robot, k in shown)} |"
-    lines = [f"| | {' | '.join(f'{robot} {titles[k]}' for robot, k in shown)} |", f"|---|{'---:|' * len(shown)}"]
-    lines.append(row("all passes", everything))
-    for name in passes:
-        print(f"\rcounting without {name:20}", end="", file=sys.stderr)
-        counts = {robot: count(robot, [name]) for robot in ROBOTS}
-        lines.append(row(f"without `{name}`", counts))
-    lines.append(row("without any", {robot: count(robot, passes) for robot in ROBOTS}))
+    table = ROOT / "benches/results/passes.csv"
+    passes = [line.split(",")[0] for line in table.read_text().splitlines()[2:-1]]
+    titles = [f"{robot} {title}" for robot in ROBOTS for title in COLUMNS.values()]
+    lines = [",".join(["passes", *titles])]
+    for name, without in [("all", []), *((name, [name]) for name in passes), ("none", passes)]:
+        print(f"\rcounting: {name:20}", end="", file=sys.stderr)
+        lines.append(",".join([name, *(str(number) for robot in ROBOTS for number in count(robot, without))]))
     print("\rcounted" + " " * 30, file=sys.stderr)
-    table = "\n".join(lines)
-    new = re.sub(r"\| \| panda7 τ.*?\n\n", lambda _: table + "\n\n", index, flags=re.S)
-    (ROOT / "docs/passes.md").write_text(new)
+    table.write_text("\n".join(lines) + "\n")
 
 
 if __name__ == "__main__":

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Writes results/functions.csv and the table of README.md from the output of the benches in target/.
+"""Writes results/functions.csv from the output of the benches in target/.
 
   cargo bench --bench instructions -- --save-summary=json
   cargo bench --bench time
@@ -13,8 +13,6 @@ import subprocess
 
 HERE = pathlib.Path(__file__).resolve().parent
 ROBOTS = ["scara4", "puma560", "ur5", "panda7"]
-SHOWN = "panda7"
-START, END = "<!-- tables.py writes from here -->", "<!-- to here -->"
 
 
 def operations(robot):
@@ -46,35 +44,21 @@ def times():
     return found
 
 
-def table(rows):
-    """A Markdown table; numbers stand right."""
-    widths = [max(len(row[i]) for row in rows) for i in range(len(rows[0]))]
-    line = lambda row: "| " + " | ".join(c.rjust(w) if i else c.ljust(w) for i, (c, w) in enumerate(zip(row, widths))) + " |"
-    rule = "|" + "|".join("-" * (w + 1) + (":" if i else "-") for i, w in enumerate(widths)) + "|"
-    return "\n".join([line(rows[0]), rule, *map(line, rows[1:])])
-
-
 def main():
     counted, timed = instructions(), times()
     lines = [["robot", "function", "multiplications", "additions", "pairs", "instructions libm", "instructions fast", "ns libm", "ns fast"]]
-    number = lambda values, key, form: form.format(values[key]) if key in values else "-"
+    number = lambda values, key, form: form.format(values[key]) if key in values else ""
     for robot in ROBOTS:
         count = operations(robot)
-        rows = [["function", "mul", "add", "pairs", "instr. libm", "fast", "ns libm", "fast"]]
+        rows = []
         for function in dict.fromkeys(f for r, _, f in [*counted, *timed] if r == robot):
             # Inverse kinematics has loops: no number of operations.
             entry = count.get(function, {})
-            rows.append([f"`{function}`", *(str(entry.get(k, "-")) for k in ("mul", "add", "sincos")),
+            rows.append([robot, function, *(str(entry.get(k, "")) for k in ("mul", "add", "sincos")),
                          *(number(counted, (robot, t, function), "{}") for t in ("libm", "fast")),
                          *(number(timed, (robot, t, function), "{:.1f}") for t in ("libm", "fast"))])
-        rows[1:] = sorted(rows[1:], key=lambda row: [*count, "inverse_kinematics"].index(row[0].strip("`")))
-        lines += [[robot, row[0].strip("`"), *("" if cell == "-" else cell for cell in row[1:])] for row in rows[1:]]
-        if robot == SHOWN:
-            text = f"### {robot}\n\n{table(rows)}"
+        lines += sorted(rows, key=lambda row: [*count, "inverse_kinematics"].index(row[1]))
     (HERE / "results" / "functions.csv").write_text("".join(",".join(line) + "\n" for line in lines))
-    readme = HERE / "README.md"
-    before, after = readme.read_text().split(START)[0], readme.read_text().split(END)[1]
-    readme.write_text(f"{before}{START}\n\n{text}\n\n{END}{after}")
 
 
 if __name__ == "__main__":

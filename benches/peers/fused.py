@@ -3,7 +3,7 @@
 
     ./fused.py                                   everything; minutes
     ./fused.py --armgen PROGRAM --rounds 101     with a built armgen, steadier figures
-    ./fused.py --out ../../docs/performance.md         the table as Markdown, too, between the marks of that file
+    ./fused.py --csv ../results/fused.csv              the ratios as CSV, too
 
 A figure is how many times as fast the fused function is: the median over the rounds of bench.cpp of the ratio within each round.
 """
@@ -32,7 +32,7 @@ def options():
     parser.add_argument("--robots", type=names, default=ROBOTS, help="names in robots/, separated by commas")
     parser.add_argument("--functions", type=names, default=run.FUNCTIONS, help="names of functions, separated by commas")
     parser.add_argument("--rounds", type=run.positive, default=61)
-    parser.add_argument("--out", type=pathlib.Path, help="Markdown file for the table")
+    parser.add_argument("--csv", type=pathlib.Path, help="CSV file for the ratios")
     return parser.parse_args()
 
 
@@ -91,8 +91,12 @@ def main():
     every = [[ratio for all in ratios.values() for (_, own), ratio in all.items() if own == compiler] for compiler in compilers]
     lines.append(["geometric mean", *(f"{statistics.geometric_mean(ratios):.2f}" for ratios in every)])
     print(run.aligned(lines))
-    if chosen.out:
-        run.into(chosen.out, f"{run.processor_and_compilers()}; the median over {chosen.rounds} rounds.\n\n{run.aligned(lines, markdown=True)}\n")
+    print(f"{run.processor_and_compilers()}; the median over {chosen.rounds} rounds")
+    if chosen.csv:
+        cells = [["function", "compiler", *chosen.robots]]
+        for function in chosen.functions:
+            cells += [[function, c, *(f"{ratios[robot][function, c]:.2f}" for robot in chosen.robots)] for c in compilers]
+        chosen.csv.write_text("".join(",".join(line) + "\n" for line in cells))
 
 
 if __name__ == "__main__":

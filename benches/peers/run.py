@@ -6,7 +6,7 @@
     ./run.py --robots ur5,panda7 --rounds 101   fewer arms, steadier figures
     ./run.py --functions regressor,gravity      these alone
     ./run.py --cpu native                       compiled for this machine alone, not also for any of its kind
-    ./run.py --out table.md --csv table.csv     the tables, too: those of the Panda, or of the only arm, as Markdown, all as CSV
+    ./run.py --out summary.md --csv table.csv   the summary as Markdown and the tables as CSV, too
 """
 import argparse
 import hashlib
@@ -35,8 +35,6 @@ TOLERANCE = 1e-9
 SHORTEST_NS = 10
 PROCESSES = 5
 OURS = "armgen"
-# The arm whose tables the page shows.
-SHOWN = "panda7"
 
 # What Pinocchio's own cmake files define for whoever uses the library. No -march: with wider vectors Eigen's classes would be laid out
 # otherwise than in the library, which is compiled for any x86-64.
@@ -100,7 +98,7 @@ def options():
     parser.add_argument("--functions", type=names, default=FUNCTIONS, help="names of functions, separated by commas")
     parser.add_argument("--cpu", type=names, default=list(CPUS), help="what is compiled for: native, baseline (any processor of the kind), or both")
     parser.add_argument("--rounds", type=positive, default=41)
-    parser.add_argument("--out", type=pathlib.Path, help="Markdown file for the tables of the Panda, or of all arms without it")
+    parser.add_argument("--out", type=pathlib.Path, help="Markdown file for the summary")
     parser.add_argument("--csv", type=pathlib.Path, help="CSV file for all tables")
     chosen = parser.parse_args()
     for option, known in (("cpu", CPUS), ("functions", FUNCTIONS)):
@@ -299,15 +297,11 @@ def table(cases):
     return list(rows(cases, names))
 
 
-def aligned(lines, markdown=False):
+def aligned(lines):
     """The lines in columns, the first one to the left, the figures to the right."""
     widths = [max(len(line[k]) for line in lines) for k in range(len(lines[0]))]
     pad = lambda line: [line[0].ljust(widths[0]), *(cell.rjust(width) for cell, width in zip(line[1:], widths[1:]))]
-    if not markdown:
-        return "\n".join("  ".join(pad(line)) for line in lines)
-    rule = ["-" * widths[0], *("-" * (width - 1) + ":" for width in widths[1:])]
-    head, *rest = (pad(line) for line in lines)
-    return "\n".join("| " + " | ".join(line) + " |" for line in (head, rule, *rest))
+    return "\n".join("  ".join(pad(line)) for line in lines)
 
 
 def summary(cases):
@@ -346,12 +340,8 @@ def markdown(cases, rounds):
     text = [f"{machine()}.", f"{measured}; the ratio is the median of those of each round.", ""]
     for cpu in dict.fromkeys(case["cpu"] for case in cases):
         own = [case for case in cases if case["cpu"] == cpu]
-        text += [f"### Compiled for {'this machine' if cpu == 'native' else 'any x86-64'}", "", summary(own), ""]
-        robots = list(dict.fromkeys(case["robot"] for case in own))
-        for robot in [SHOWN] if SHOWN in robots else robots:
-            text += [f"#### {robot}", "", aligned(table([case for case in own if case["robot"] == robot]), markdown=True), ""]
-    text += [f"\\* does not count: the fastest peer needs less than {SHORTEST_NS} ns.", ""] if not all(c["counts"] for c in cases) else []
-    return "\n".join(text)
+        text.append(f"- Compiled for {'this machine' if cpu == 'native' else 'any x86-64'}: {summary(own)}")
+    return "\n".join([*text, ""])
 
 
 def comma_separated(cases):

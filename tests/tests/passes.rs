@@ -1,7 +1,7 @@
 //! The values of a module do not depend on the passes that reduce its cost. Without any single pass, and without all passes, it
 //! agrees with the stored reference values equally well. It agrees with the module of all passes except for the last digits.
 //!
-//! `cargo test -p armgen-tests --test all passes -- --ignored --nocapture` prints by how much: the table in docs/passes.md.
+//! `cargo test -p armgen-tests --test all passes -- --ignored --nocapture` prints by how much; docs/passes.md has the largest.
 
 use armgen_codegen::pass::{Pass, Passes};
 use armgen_codegen::schedule::{Options, Selection};
