@@ -12,7 +12,7 @@ struct Companion {
     language: Language,
     file: [&'static str; 2],
     with: [&'static str; 2],
-    /// What asks for it; nothing where it is always written.
+    /// The option that requests it; empty if it is always written.
     flag: &'static str,
 }
 
@@ -79,7 +79,7 @@ pub(crate) fn goes_with(file: &Path, text: &str) -> Option<String> {
 /// The possible companions of a module, each with its option.
 pub(crate) fn beside(module: &Path, language: Language) -> Vec<(PathBuf, &'static str)> {
     let name = name_of(module);
-    // What goes with inverse kinematics stands beside the module as well.
+    // Companions of inverse kinematics are companions of the module, too.
     let stem_of = |companion: &Companion| {
         let [before, behind] = companion.with;
         between(name, [before, behind.trim_start_matches("_ik")])

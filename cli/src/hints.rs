@@ -1,4 +1,4 @@
-//! What to type instead of arguments that do not exist, where others have taught them.
+//! Replacements of unknown arguments that users know from other programs.
 
 use std::path::Path;
 

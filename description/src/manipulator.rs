@@ -22,7 +22,7 @@ use crate::kinds::{JointKind, ParameterId, TaskRow};
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct LinkId(pub u32);
 
-/// What `inverse_kinematics` of the description asks for.
+/// The choices of the description under `inverse_kinematics`.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Postures {
     /// The target; without it, what `task` says.
@@ -61,7 +61,7 @@ pub struct Manipulator {
     pub task: Vec<TaskRow>,
     /// The choice of the regressor's columns.
     pub regressor: RegressorChoice,
-    /// What `inverse_kinematics` of the description asks for.
+    /// The choices of the description under `inverse_kinematics`.
     pub inverse_kinematics: Postures,
 }
 
@@ -99,7 +99,7 @@ pub struct Joint {
     pub viscous: Option<Polynomial>,
     /// Coulomb friction at the joint, N m or N; the torque is coulomb · sign(dq).
     pub coulomb: Option<Polynomial>,
-    /// What Coulomb friction has more forwards than backwards, halved, N m or N: the torque is offset, whatever the rate.
+    /// Half the difference of Coulomb friction forwards and backwards, N m or N: the torque is offset at every rate.
     pub offset: Option<Polynomial>,
     /// Cubic friction, N m s³ or N s³/m³: the torque is cubic · dq³.
     pub cubic: Option<Polynomial>,

@@ -21,7 +21,7 @@ impl Origin {
         let plain =
             |c: char| !is_hidden(c) && (c.is_alphanumeric() || c == ' ' || (c.is_ascii_graphic() && !"*\\?:=".contains(c)));
         let escaped = |c: char| if plain(c) { c.to_string() } else { format!("U+{:04X}", u32::from(c)) };
-        // What stands behind the name in the head is read from the end of the line.
+        // The head is read from the end of its line, so the name may contain anything.
         let file = name.chars().map(escaped).collect::<String>().replace("(input ", "U+0028input ");
         let digest = Sha256::digest(source.text().as_bytes());
         Origin { file, hash: digest.iter().take(8).map(|byte| format!("{byte:02x}")).collect() }
@@ -44,7 +44,7 @@ mod tests {
         assert_eq!(file("robots/my arm_2.yaml"), "my arm_2.yaml");
         assert_eq!(file("r\u{e4}der.yaml"), "r\u{e4}der.yaml");
         assert_eq!(file("a\nb\r*\u{202e}.yaml"), "aU+000AbU+000DU+002AU+202E.yaml");
-        // What stands before a slash is a folder.
+        // The text before a slash is a folder.
         assert_eq!(file("a */ #define b /* (input c).yaml"), "U+002A U+0028input c).yaml");
         assert_eq!(file("a (2)\u{115f}.yaml"), "a (2)U+115F.yaml");
     }

@@ -6,7 +6,7 @@ use std::sync::OnceLock;
 /// As much stack as the main thread of a program has.
 const STACK: usize = 8 << 20;
 
-/// What `of` gives for each item, on as many threads as there are processors; the last items, which take longest, first.
+/// The result of `of` for each item, on as many threads as there are processors; the last items, which take longest, first.
 pub fn parallel_map<T: Sync, R: Send + Sync>(items: &[T], of: impl Fn(&T) -> R + Sync) -> Vec<R> {
     let results: Vec<OnceLock<R>> = items.iter().map(|_| OnceLock::new()).collect();
     for_each_index(items.len(), &|i| {

@@ -22,7 +22,7 @@ pub fn did_you_mean<'w>(found: &str, words: &[&'w str]) -> Option<&'w str> {
     ranked.min_by_key(|(d, word)| (*d, letters(word) != own)).map(|(_, word)| word)
 }
 
-/// What Pinocchio, MuJoCo, the Robotics Toolbox and books call functions, and the names that they have here.
+/// Names of functions in Pinocchio, MuJoCo, the Robotics Toolbox and books, and their names here.
 const OTHER_WORDS: &[(&str, &str)] = &[
     ("M", "inertia_matrix"),
     ("B", "inertia_matrix"),

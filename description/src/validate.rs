@@ -131,7 +131,7 @@ fn validate(
     let regressor = choices::regressor(description, &mut context);
     let inverse_kinematics = choices::inverse_kinematics(description, context.diagnostics);
     bodies::warn_of_planar(&mut context);
-    // What could not be read may use any name.
+    // An unreadable expression may use any name.
     if complete {
         context.evaluator.parameters.warn_of_unused(context.diagnostics);
     }

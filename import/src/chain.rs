@@ -91,7 +91,7 @@ pub(crate) struct Arm {
     pub(crate) left_out_branches: usize,
     /// Notes for the user.
     pub(crate) notes: Vec<String>,
-    /// What was taken where the file says nothing, and what of the base has no part in the equations.
+    /// Assumptions about absent values, and the parts of the base that have no effect on the equations.
     pub(crate) assumed: Vec<String>,
 }
 
@@ -364,7 +364,7 @@ impl Builder<'_> {
         Some(Pose::of_joint(joint.kind == Kind::Prismatic, axis, offset, &lock.text, lock.value, lock.span))
     }
 
-    /// What hangs on a link without moving against it: its own body if it is the moving link, and the others with their poses.
+    /// The bodies that are fixed to a link: its own body if it is the moving link, and the others with their poses.
     fn bodies(&mut self, link: usize, at: &[Pose], own: Option<usize>) -> Option<(Option<Body>, Vec<Attached>, bool)> {
         let tree = self.tree;
         let (mut body, mut attached, mut unreadable) = (None, Vec::new(), false);

@@ -100,7 +100,7 @@ codes! {
         RepeatedElement Warning "repeated-element",
         /// A last joint that seems to open a gripper.
         FingerAsTip Warning "finger-as-tip",
-        /// What would change the motion, and is left out.
+        /// An omitted part that would change the motion.
         ChangesMotion Warning "changes-motion",
     }
 }

@@ -39,7 +39,7 @@ pub(crate) const COMMENTS: &str = "comments of the description are left out";
 pub struct Converted {
     /// The text of robot.yaml.
     pub yaml: String,
-    /// What was rounded, and what means something else now, a line for each.
+    /// Rounded values, and parts with a new meaning, a line for each.
     pub lines: Vec<String>,
 }
 
@@ -445,7 +445,7 @@ impl<'d> Converter<'d> {
         text.push(format!("{indent}inertia: {{{}}}", parts.join(", ")));
     }
 
-    /// What does not depend on frames.
+    /// The parts that do not depend on frames.
     fn rest(&self, text: &mut Vec<String>) {
         // Every key, so that none is left out unseen; the first ones are written before.
         let RobotDescription {

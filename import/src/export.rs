@@ -35,7 +35,7 @@ use crate::number::{decimal, ending};
 pub struct Exported {
     /// The text of the URDF.
     pub urdf: String,
-    /// What was rounded or left out, a line for each.
+    /// Rounded and omitted values, a line for each.
     pub lines: Vec<String>,
 }
 
@@ -132,7 +132,7 @@ impl Writer<'_> {
         let name = |joint: &JointDescription| joint.name.as_ref().map_or_else(String::new, |name| name.value.clone());
         self.names.extend(joints.iter().map(|joint| format!("{}_link", name(joint))));
         let mut link = "base".to_owned();
-        // What stands between the origin of the last link and the next row.
+        // The poses between the origin of the last link and the next row.
         let mut before = self.poses(description.base.as_ref());
         for (k, joint) in joints.iter().enumerate() {
             let twist = [self.about_x(joint)];
@@ -369,7 +369,7 @@ impl Writer<'_> {
                 lines.push(format!("{what}: {}", names.join(", ")));
             }
         };
-        // What is 0 is not left out.
+        // Zeros are kept.
         let is_some = |value: &Value| !self.number(value).is_zero();
         let of_motor = |joint: &JointDescription, value: fn(&MotorDescription) -> &Value| {
             joint.motor.as_ref().is_some_and(|motor| is_some(value(motor)))

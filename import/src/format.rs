@@ -106,7 +106,7 @@ pub(crate) trait Format {
         Vec::new()
     }
 
-    /// What concerns the arm as a whole.
+    /// The parts that concern the whole arm.
     fn check(&self, extent: &Extent<'_>, diagnostics: &mut Diagnostics);
 
     /// Elements that are left out, by name.

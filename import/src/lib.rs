@@ -63,12 +63,12 @@ pub use include::{included, Reader};
 pub use options::Options;
 pub use report::Report;
 
-/// What became of a file.
+/// The result of an import.
 #[derive(Clone, Debug)]
 pub struct Imported {
     /// The text of robot.yaml.
     pub yaml: String,
-    /// What was taken, changed and left out.
+    /// The parts that were taken, changed and left out.
     pub report: Report,
 }
 

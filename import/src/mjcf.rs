@@ -35,10 +35,10 @@ use crate::written::Written;
 use crate::xml::{attribute, place, shown};
 use crate::Code;
 
-/// What to do with a file that holds more than descriptions of bodies.
+/// The help for a file that has more than descriptions of bodies.
 const SAVE_COMPILED: &str = "save the compiled model as XML (`mj_saveLastXML`, or \"Save xml\" in the viewer) and import that";
 
-/// What `compiler` says.
+/// The settings of `compiler`.
 struct Compiler {
     degrees: bool,
     /// Axes of Euler angles; upper case: fixed ones.

@@ -1,8 +1,8 @@
-//! What to make of a file.
+//! The choices of an import.
 
 use armgen_codegen::description::Convention;
 
-/// What to make of a file.
+/// The choices of an import.
 #[derive(Clone, Debug)]
 pub struct Options {
     /// The link that does not move; the root of the file if `None`.

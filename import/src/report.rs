@@ -1,4 +1,4 @@
-//! What became of a file: as JSON for programs, and in a few lines for people.
+//! The report of an import: as JSON for programs, and in a few lines for people.
 
 use std::collections::BTreeMap;
 
@@ -10,7 +10,7 @@ use crate::chain::{Arm, Attached, Row};
 use crate::format::Format;
 use crate::snap::Snapped;
 
-/// What was taken, changed and left out.
+/// The parts that were taken, changed and left out.
 #[derive(Clone, Debug)]
 pub struct Report {
     json: Value,

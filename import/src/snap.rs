@@ -19,7 +19,7 @@ const DUST: f64 = 1e-14;
 /// Angles as near to a multiple as this, rad, are mentioned where they are taken as written.
 const NEAR: f64 = 2e-3;
 
-/// What was taken for something else.
+/// The replacements.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Snapped {
     pub(crate) span: Span,

@@ -125,7 +125,7 @@ impl Tree {
         self.joint_names.get(name).copied()
     }
 
-    /// What may have been meant by the name of a link that does not exist: the one that hangs on a joint of that name, one of nearly that name, or
+    /// A suggestion for the name of an unknown link: the link on a joint of that name, a link of nearly that name, or
     /// one of the last links. Only the first few names get a suggestion.
     pub(crate) fn meant_link(&self, name: &str) -> String {
         if let Some(joint) = self.joint(name).map(|joint| &self.joints[joint]) {
@@ -143,7 +143,7 @@ impl Tree {
         meant(name, &named.iter().map(|link| link.name.as_str()).collect::<Vec<_>>())
     }
 
-    /// What may have been meant by the name of a joint that does not exist. Only the first few names get a suggestion.
+    /// A suggestion for the name of an unknown joint. Only the first few names get a suggestion.
     pub(crate) fn meant_joint(&self, name: &str) -> String {
         if !self.guesses() {
             return "name one of the file's joints".to_owned();
@@ -240,7 +240,7 @@ impl Tree {
     }
 }
 
-/// What may have been meant by a name that is none of these.
+/// A suggestion for a name that is not among these.
 pub(crate) fn meant(name: &str, known: &[&str]) -> String {
     let short: Vec<&str> = known.iter().copied().filter(|name| name.len() < COMPARED).collect();
     match did_you_mean(name, &short) {

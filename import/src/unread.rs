@@ -16,7 +16,7 @@ use crate::Code;
 /// The most spellings to compare with known words. No file of an arm has more unread names.
 const MOST: usize = 1000;
 
-/// What an element of each name may hold: names of elements, or of attributes.
+/// The permitted names of elements, or of attributes, in an element of each name.
 pub(crate) type Known = [(&'static str, &'static [&'static str])];
 
 fn known_of<'k>(known: &'k Known, element: &str) -> Option<&'k [&'static str]> {
@@ -85,7 +85,7 @@ pub(crate) fn warn_of_attributes<'a, 'i: 'a>(
     }
 }
 
-/// What to write instead; of an element with many attributes they are not listed.
+/// The help; it does not list attributes if there are many.
 fn what_is_read(element: &str, known: &[&str]) -> String {
     match known {
         [only] => format!("of `{element}` only `{only}` is read: say it with that, or take it out"),

@@ -186,7 +186,7 @@ impl Values<'_> {
             shown(joint),
             value.text
         );
-        // What is suggested is a limit itself.
+        // The suggestion is itself a limit.
         let instead = match slides {
             true => value.exact().as_rational().and_then(|v| ending(&(v.clone() / Rational::from(1000)))),
             false => Some(format!("deg({})", value.text)),

@@ -147,7 +147,7 @@ fn refusal(source: &Source, error: &Error) -> Diagnostic {
         }
     };
     let fault = Diagnostic::new(code, span, message, if ends { "ends here" } else { "here" }, help);
-    // What is opened and not closed is told by what follows, far below it.
+    // The parser reports an open element far below it, at the next mismatch.
     let open = match error {
         Error::UnexpectedCloseTag(..) => still_open(text, at),
         _ if ends => still_open(text, text.len()),

@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use crate::output::write_other;
 use crate::{input, terminal};
 
-/// What can be written.
+/// The formats of the export.
 #[derive(Clone, Copy, Debug, clap::ValueEnum)]
 pub(crate) enum Format {
     /// As in wiki.ros.org/urdf/XML

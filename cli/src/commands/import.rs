@@ -135,8 +135,8 @@ pub(crate) fn run(file: &Path, choices: Choices, results: &Results) -> u8 {
     for line in imported.report.short_lines() {
         terminal::note(line);
     }
-    // What only the description shows, such as a last link without inertia about its axis. Of a humanoid beside its arm that takes seconds, and
-    // `armgen check` says it of every description.
+    // Faults that only the description shows, such as a last link without inertia about its axis. For a humanoid with its many bodies
+    // this takes seconds, and `armgen check` reports them for every description.
     if imported.report.attached() <= MOST_BODIES {
         note_faults(&source, &options, &imported, results);
     }

@@ -208,7 +208,7 @@ impl Reader<'_> {
 /// Elements by name, without zeros.
 fn mapping(elements: &[(&str, &str)]) -> String {
     let kept = elements.iter().filter(|(_, text)| text.parse() != Ok(0.0));
-    // What is shortened cannot be copied.
+    // A shortened text cannot be copied.
     let is_short = elements.iter().all(|(_, text)| excerpt(text) == *text);
     let entries: Vec<String> = kept.map(|(name, text)| format!("{name}: {}", if is_short { text } else { "..." })).collect();
     format!("{{{}}}", entries.join(", "))

@@ -94,7 +94,7 @@ pub(super) fn apply(description: &mut RobotDescription, diagnostics: &mut Diagno
     });
 }
 
-/// What an expression is as an angle.
+/// The kinds of angles that an expression can be.
 #[derive(Clone, Copy, PartialEq)]
 enum Angle {
     Zero,

@@ -41,7 +41,7 @@ pub(super) fn inverse_kinematics(description: &RobotDescription, diagnostics: &m
     let asked = &description.inverse_kinematics;
     let mut postures = Postures { target: asked.target.as_ref().map(|target| target.value), given: None };
     let Some(given) = &asked.given else { return postures };
-    // What is wrong with the joints has been said.
+    // Faults of the joints are already reported.
     let Some(joints) = &description.joints else { return postures };
     let names: Vec<&str> = joints.value.iter().filter_map(|joint| joint.name.as_ref()).map(|name| name.value.as_str()).collect();
     let place = joints.value.iter().position(|joint| joint.name.as_ref().is_some_and(|name| name.value == given.value));

@@ -19,7 +19,7 @@ const MAX_ALL_TERMS: usize = 16_384;
 pub(super) struct Evaluator<'d> {
     pub(super) parameters: Parameters<'d>,
     scalar: Scalar,
-    /// What each abbreviation stands for; `None` for other names, and where there is no value.
+    /// The value of each abbreviation; `None` for other names, and without a value.
     abbreviations: Vec<Option<Polynomial>>,
     /// Terms of the polynomials evaluated so far.
     terms: usize,

@@ -1,4 +1,4 @@
-//! What names of links and joints are about: frames of tools, and fingers.
+//! The meaning of names of links and joints: frames of tools, and fingers.
 
 /// Words of names of a tool's frame, the likeliest first; a name may need two adjacent words.
 const TOOLS: [&[&str]; 16] = [

@@ -28,7 +28,7 @@ pub(super) struct Axis {
     pub(super) prismatic: bool,
 }
 
-/// What belongs to line k.
+/// The data of line k.
 pub(super) struct Normal {
     /// a_k.
     pub(super) length: Number,

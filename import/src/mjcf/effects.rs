@@ -140,7 +140,7 @@ pub(super) fn refuse_compensation(body: Node<'_, '_>, values: &mut Values<'_>) {
     }
 }
 
-/// What couples the joints of the arm with each other or with the world, or changes how it moves.
+/// Refuses elements that couple the joints of the arm with each other or with the world, or that change its motion.
 pub(super) fn check(mjcf: &Mjcf<'_, '_>, extent: &Extent<'_>, diagnostics: &mut Diagnostics) {
     let root = mjcf.root;
     let moves = |name: &str| extent.tree.joint(name).is_some_and(|joint| extent.moving.contains(&joint));

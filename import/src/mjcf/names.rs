@@ -124,7 +124,7 @@ const SINGLE: [(&str, &[&str]); 1] = [("body", &["inertial"])];
 /// Warns of what nothing reads of the sections that are read.
 pub(super) fn warn_of_unread<'a, 'i: 'a>(root: Node<'a, 'i>, diagnostics: &mut Diagnostics) {
     let read = ["compiler", "option", "default", "worldbody"].into_iter().flat_map(|name| sections(root, name));
-    // What stands in an element for others has names of its own, and is refused.
+    // An element that replaces others has names of its own, and is refused.
     let written_out = |node: &Node<'a, 'i>| {
         !node.ancestors().skip(1).any(|outer| ["composite", "flexcomp", "replicate"].contains(&outer.tag_name().name()))
     };

@@ -118,7 +118,7 @@ fn words(name: &str) -> Vec<String> {
     words
 }
 
-/// What an element holds; `None` of one that holds other elements alone.
+/// The content of an element; `None` if it has only other elements.
 fn value_of(node: Node<'_, '_>) -> Option<String> {
     if let Some(value) = node.attribute("value") {
         return Some(shown(value));

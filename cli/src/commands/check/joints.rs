@@ -129,7 +129,7 @@ pub(super) fn limits(manipulator: &Manipulator) -> Option<String> {
     table.says_more_than_names().then(|| table.text())
 }
 
-/// What drives the joints and what holds them back; nothing where the file says nothing of it.
+/// Drives and friction of the joints; `None` if the file gives no such value.
 pub(super) fn drives(manipulator: &Manipulator) -> Option<String> {
     let mut table = Table::new([
         ("drive", Left),
@@ -164,7 +164,7 @@ fn drive(i: usize, joint: &Joint, manipulator: &Manipulator) -> [String; 12] {
     };
     let motor = joint.motor.as_ref();
     let rotor = motor.and_then(|motor| motor.inertia.as_ref());
-    // What the joint feels of its rotor and of the armature: ratio² I + armature.
+    // The inertia of rotor and armature at the joint: ratio² I + armature.
     let square = motor.map(|motor| &motor.ratio * &motor.ratio);
     let reflected = rotor.zip(square.as_ref()).map(|(inertia, square)| square * inertia);
     let felt = [&reflected, &joint.armature].into_iter().flatten().cloned().reduce(|a, b| &a + &b);

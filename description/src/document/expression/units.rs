@@ -5,7 +5,7 @@ use crate::exact::Rational;
 /// How angles in degrees are written.
 pub(super) const DEGREES: &str = "write an angle in degrees as `deg(90)`";
 
-/// What becomes of a number in a unit.
+/// The conversion of a number in a unit.
 #[derive(Clone, Copy)]
 enum To {
     /// It is multiplied by a power of ten.

@@ -1,4 +1,4 @@
-//! What drives and holds the joints: rotors, armatures, friction, limits of rates and efforts.
+//! Drives and limits of the joints: rotors, armatures, friction, limits of rates and efforts.
 
 use super::slips::{in_text, written_as};
 use super::{is_in_degrees, number, short, written, Arm, FASTEST_SLIDE, FASTEST_TURN, LEAST_RATIO, REFLECTED, SMALL_REACH};
@@ -120,7 +120,7 @@ impl Arm<'_> {
         }
     }
 
-    /// What holds the stretched arm on earth, N m or N; 0 where nothing follows from its size.
+    /// The torque that holds the stretched arm on earth, N m or N; 0 if nothing follows from its size.
     fn weight(&self, joint: &JointDescription) -> f64 {
         let total: f64 = self.masses.iter().sum();
         match self.reach > SMALL_REACH {

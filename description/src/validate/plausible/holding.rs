@@ -117,7 +117,7 @@ fn most_asked(arm: &Manipulator) -> Vec<f64> {
             (Frame::of(arm, &joint.row.before.frame), axis, Frame::of(arm, &joint.row.after.frame))
         })
         .collect();
-    // What each link carries, in its frame: bodies, and the rotors of the joints after it; the payload on the last one.
+    // The load of each link, in its frame: bodies, and the rotors of the joints after it; the payload on the last one.
     let mut carried: Vec<Vec<(f64, Vector)>> = arm
         .joints
         .iter()

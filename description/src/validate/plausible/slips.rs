@@ -1,4 +1,4 @@
-//! What to write instead of a value that is off by a power of ten: with all its digits, or nothing.
+//! The replacement of a value that is off by a power of ten, with all its digits, if there is one.
 
 use super::{definition, number, AS_LIKELY, LEAD, OF_LEAD_BALL, UNITS_OF_INERTIA};
 use crate::description::{InertiaDescription, INERTIA_ELEMENTS};
