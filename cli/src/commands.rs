@@ -9,5 +9,6 @@ pub(crate) mod generate;
 pub(crate) mod import;
 pub(crate) mod package;
 pub(crate) mod page;
+pub(crate) mod schema;
 pub(crate) mod show;
 pub(crate) mod verify;

@@ -70,7 +70,8 @@ enum Command {
   armgen check robots/*.yaml
   armgen check robot.yaml --full                  every table
   armgen check robot.yaml --strict --allow triangle-inequality
-  armgen check robot.yaml --format json           for programs (docs/robot-yaml.md)
+  armgen check robot.yaml --format json           for programs (docs/editors.md)
+  armgen check robot.yaml --format sarif          for code scanning
 
 A file may allow kinds of warnings itself: `allow: [missing-inertia]`.
 The summary goes to standard output; errors and warnings go to standard error, each with
@@ -292,6 +293,13 @@ Exit codes: 0 done, 1 the description is faulty, 2 a file cannot be read or writ
         #[arg(long = "log", value_name = "CSV", value_hint = ValueHint::FilePath)]
         logs: Vec<PathBuf>,
     },
+    /// Print the JSON Schema of robot.yaml, for editors
+    #[command(after_help = "Examples:
+  armgen schema > robot.schema.json
+
+Editors use it for completion, explanations and a first check (docs/editors.md). It accepts every
+file that armgen accepts; names, signs and sums are left to `armgen check`.")]
+    Schema,
     /// Robots move in the lab: `cargo run --release -- run` in the folder of armgen
     #[command(hide = true)]
     Run {
@@ -344,8 +352,10 @@ enum ShowFormat {
 enum CheckFormat {
     /// For a terminal
     Text,
-    /// For programs: one object a line for each file
+    /// For programs: one document for all files
     Json,
+    /// For code scanning: SARIF 2.1.0
+    Sarif,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
@@ -404,7 +414,8 @@ fn main() -> ExitCode {
             let doubts = commands::check::Doubts { strict, allow };
             match format {
                 CheckFormat::Text => commands::check::run(&files, &doubts, full),
-                CheckFormat::Json => commands::check::json::run(&files, &doubts),
+                CheckFormat::Json => commands::check::run_for_programs(&files, &doubts, commands::check::Form::Json),
+                CheckFormat::Sarif => commands::check::run_for_programs(&files, &doubts, commands::check::Form::Sarif),
             }
         }
         Command::Show { file, quantities, symbolic, form, digits, format } => {
@@ -426,6 +437,7 @@ fn main() -> ExitCode {
             );
             UNREADABLE
         }
+        Command::Schema => commands::schema::run(),
         Command::Completions { shell } => commands::completions::run(shell),
     };
     ExitCode::from(code)

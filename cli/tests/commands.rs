@@ -1,4 +1,4 @@
-//! The program as its users run it: exit codes, what goes to which stream, the forms of output.
+//! The program as its users run it: exit codes, streams, the forms of output.
 
 #[path = "commands/check.rs"]
 mod check;
@@ -100,7 +100,9 @@ fn completions_for_every_shell() {
 
 #[test]
 fn help_has_examples() {
-    for command in ["", "check", "show", "generate", "import", "convert", "export", "verify", "count", "page", "completions"] {
+    for command in
+        ["", "check", "show", "generate", "import", "convert", "export", "verify", "count", "page", "schema", "completions"]
+    {
         let arguments: Vec<&str> = [command, "--help"].into_iter().filter(|a| !a.is_empty()).collect();
         let text = out(&check(&arguments, 0));
         assert!(text.contains("Examples:\n"), "armgen {arguments:?}");

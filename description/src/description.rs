@@ -2,6 +2,7 @@
 //!
 //! ```text
 //! Source -> document: tree of nodes -> reader.rs: which keys there are, and what stands under each -> RobotDescription
+//!                                     keys.rs:   the keys, their values, meaning and units; schema.rs: the same as a JSON Schema
 //!                                     values.rs: every value, with its role and its dimension
 //!                                     units.rs:  the units that the file names, applied to them
 //! ```
@@ -9,8 +10,10 @@
 //! Absent from here on: YAML, unknown keys, wrong kinds of values, malformed expressions. What could not be read is `None`, and its
 //! fault is reported; so validation goes on with the rest, and every fault of a file comes in one go.
 
+mod keys;
 mod other_formats;
 mod reader;
+pub mod schema;
 mod units;
 mod values;
 
@@ -20,7 +23,7 @@ use crate::kinds::{JointKind, Target, TaskRow};
 use crate::source::{Source, Span, Spanned};
 pub use values::{Dimension, Role};
 
-/// A list of values as it stands in the file, or in SI units where the file names others.
+/// The text of a list in the file, or in SI units if the file names others.
 pub fn list_text<const N: usize>(list: &Spanned<[Value; N]>, source: &Source) -> String {
     let converted = list.value.iter().flatten().any(|value| matches!(value.kind, crate::document::ExpressionKind::InUnit(..)));
     if !converted {
@@ -39,13 +42,13 @@ pub type Value = Option<Expression>;
 pub struct RobotDescription {
     /// Name of the robot.
     pub name: Option<Spanned<String>>,
-    /// What the rows of joints are.
+    /// The kind of rows that joints have.
     pub convention: Option<Spanned<Convention>>,
     /// Acceleration of gravity in the base frame.
     pub gravity: Option<Spanned<[Value; 3]>>,
     /// The units of plain numbers, those that the file names. The values are in SI units already.
     pub units: Vec<NamedUnit>,
-    /// What products of inertia are. The values are elements of the tensor already.
+    /// The meaning of products of inertia. The values are elements of the tensor already.
     pub products: Option<Spanned<Products>>,
     /// Named quantities.
     pub parameters: Vec<ParameterDescription>,
@@ -61,13 +64,13 @@ pub struct RobotDescription {
     pub task: Option<Spanned<Vec<Spanned<TaskRow>>>>,
     /// The regressor's columns. The span is the key's.
     pub regressor: Option<Spanned<RegressorDescription>>,
-    /// What inverse kinematics is asked for.
+    /// The choices for inverse kinematics.
     pub inverse_kinematics: PosturesDescription,
-    /// Kinds of warnings that are meant as they are.
+    /// Kinds of warnings that the file accepts.
     pub allow: Vec<Spanned<String>>,
 }
 
-/// What a row of a joint is.
+/// The meaning of a joint's row.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Convention {
     /// A_i = Rz(theta) Tz(d) Tx(a) Rx(alpha).
@@ -85,11 +88,11 @@ pub struct NamedUnit {
     pub key: &'static str,
     /// As it is written.
     pub text: Spanned<String>,
-    /// What it is.
+    /// The unit.
     pub unit: Unit,
 }
 
-/// What the products of inertia of a file are.
+/// The meaning of the products of inertia of a file.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Products {
     /// Elements of the tensor: xy is -∫xy dm.
@@ -136,7 +139,7 @@ pub struct JointDescription {
     pub friction: FrictionDescription,
     /// A spring at the joint.
     pub spring: Option<SpringDescription>,
-    /// What is added to the joint's own entry of the inertia matrix.
+    /// The addition to the joint's own entry of the inertia matrix.
     pub armature: Value,
     /// Where the joint begins: its first key.
     pub span: Span,
@@ -160,13 +163,13 @@ pub struct FrictionDescription {
     pub viscous: Value,
     /// Coulomb friction.
     pub coulomb: Value,
-    /// What is added to Coulomb friction forwards and taken off it backwards.
+    /// The addition to Coulomb friction forwards, subtracted backwards.
     pub offset: Value,
     /// Coefficient of the cube of the rate.
     pub cubic: Value,
     /// How many times the joint's gravity torque is added to dry friction.
     pub load: Value,
-    /// What fades as the joint begins to move.
+    /// The part that fades as the joint begins to move.
     pub stribeck: Option<StribeckDescription>,
 }
 
@@ -286,10 +289,10 @@ pub enum RotationDescription {
     XyAxes(Spanned<[Value; 6]>),
 }
 
-/// What inverse kinematics is asked for.
+/// The choices for inverse kinematics.
 #[derive(Clone, Debug, Default)]
 pub struct PosturesDescription {
-    /// What it reaches.
+    /// The target.
     pub target: Option<Spanned<Target>>,
     /// The joint whose value is given, or `swivel`.
     pub given: Option<Spanned<String>>,

@@ -1,4 +1,4 @@
-//! What is wrong with a text, where, why, and how to mend it.
+//! Faults of a text: place, reason and remedy.
 //!
 //! A stage gathers [`Diagnostic`]s and goes on with what it could read; nobody sees the first fault alone.
 //! There is one rendering, for terminal, build script and snapshots: [`Diagnostics::render`].
@@ -25,13 +25,19 @@ pub struct AnyCode {
     order: u16,
     name: &'static str,
     severity: Severity,
+    about: &'static str,
 }
 
 impl AnyCode {
-    /// What [`codes!`](crate::codes) makes of a variant.
+    /// The code of a variant of [`codes!`](crate::codes).
     #[doc(hidden)]
-    pub const fn new(order: u16, name: &'static str, severity: Severity) -> AnyCode {
-        AnyCode { order, name, severity }
+    pub const fn new(order: u16, name: &'static str, severity: Severity, about: &'static str) -> AnyCode {
+        AnyCode { order, name, severity, about }
+    }
+
+    /// The meaning: the documentation of the variant.
+    pub fn about(self) -> &'static str {
+        self.about.trim_start()
     }
 
     /// The stable name, as printed in brackets: `error[unknown-key]`.
@@ -61,13 +67,13 @@ impl AnyCode {
 #[macro_export]
 macro_rules! codes {
     ($(#[$about:meta])* $visibility:vis enum $code:ident {
-        $($(#[$doc:meta])* $variant:ident $severity:ident $name:literal,)*
+        $($(#[doc = $doc:literal])* $variant:ident $severity:ident $name:literal,)*
     }) => {
         $(#[$about])*
         #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
         #[non_exhaustive]
         $visibility enum $code {
-            $($(#[$doc])* $variant,)*
+            $($(#[doc = $doc])* $variant,)*
         }
 
         impl $code {
@@ -91,7 +97,10 @@ macro_rules! codes {
 
         impl From<$code> for $crate::diagnostic::AnyCode {
             fn from(code: $code) -> Self {
-                $crate::diagnostic::AnyCode::new(code as u16, code.name(), code.severity())
+                let about = match code {
+                    $($code::$variant => concat!($($doc),*),)*
+                };
+                $crate::diagnostic::AnyCode::new(code as u16, code.name(), code.severity(), about)
             }
         }
 
@@ -281,12 +290,12 @@ codes! {
     }
 }
 
-/// A place in the text and what to say about it.
+/// A place in the text, with a description.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Label {
     /// The place.
     pub span: Span,
-    /// What is there; may be empty.
+    /// A description of the place; may be empty.
     pub text: String,
 }
 
@@ -295,11 +304,11 @@ pub struct Label {
 pub struct Diagnostic {
     /// Its kind.
     pub code: AnyCode,
-    /// One sentence: what is wrong.
+    /// The fault, in one sentence.
     pub message: String,
-    /// Where; the first label is the place of the diagnostic.
+    /// Its places; the first label is the place of the diagnostic.
     pub labels: Vec<Label>,
-    /// What to do about it.
+    /// The remedy.
     pub help: String,
 }
 
@@ -327,7 +336,7 @@ impl Diagnostic {
         self
     }
 
-    /// Where it stands.
+    /// Its place.
     pub fn span(&self) -> Span {
         self.labels[0].span
     }
@@ -356,7 +365,7 @@ pub struct Diagnostics {
 }
 
 impl Diagnostics {
-    /// None.
+    /// An empty list.
     pub fn new() -> Diagnostics {
         Diagnostics::default()
     }
@@ -368,7 +377,7 @@ impl Diagnostics {
         }
     }
 
-    /// Adds those of another stage.
+    /// Adds the diagnostics of another stage.
     pub fn extend(&mut self, others: Diagnostics) {
         for diagnostic in others.list {
             self.push(diagnostic);
@@ -390,7 +399,7 @@ impl Diagnostics {
         self.list.iter()
     }
 
-    /// Whether there are none.
+    /// Whether there are no diagnostics.
     pub fn is_empty(&self) -> bool {
         self.list.is_empty()
     }
@@ -416,7 +425,7 @@ impl Diagnostics {
         let mut names_error = !self.has_errors();
         for diagnostic in &self.list {
             let is_error = diagnostic.code.severity() == Severity::Error;
-            // Whatever stands before it, one error is shown: it is why there is no arm.
+            // One error is always shown, after any number of warnings: it is the reason why there is no arm.
             if (rendered >= RENDERED || bytes >= RENDERED_BYTES) && (names_error || !is_error) {
                 continue;
             }

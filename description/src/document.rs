@@ -5,16 +5,16 @@
 //!                                     expression.rs: scalar -> Expression
 //! ```
 //!
-//! Nothing here knows what a file is about: which keys there are, and what stands under them, is said by whoever reads.
+//! Nothing here knows the kind of a file: the caller of the reader defines the keys and their values.
 
 mod expression;
 pub mod reader;
 pub mod yaml;
 
-pub(crate) use expression::out_of_range;
 pub use expression::{decimal_text, multiple_of_pi, parse as parse_expression, Expression, ExpressionKind, Operator, Unit};
+pub(crate) use expression::{out_of_range, MAX_TEXT as MAX_EXPRESSION};
 
-/// What a character is called that looks like a blank, or like nothing, and is no space of YAML.
+/// The name of a character that looks like a blank or is invisible, but that YAML does not treat as a space.
 fn invisible(c: char) -> Option<String> {
     let name = match c {
         '\u{a0}' | '\u{202f}' => "a no-break space",

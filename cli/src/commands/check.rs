@@ -1,11 +1,13 @@
-//! `armgen check`: what a description says, and what is wrong with it.
+//! `armgen check`: a summary of a description, and its faults.
 
 mod bodies;
 mod identification;
 mod joints;
-pub(crate) mod json;
+mod json;
+mod judged;
 mod posture;
 mod reach;
+mod sarif;
 
 use std::path::{Path, PathBuf};
 
@@ -24,6 +26,7 @@ use crate::{input, terminal, DONE, FAULTY};
 
 use super::convert;
 use super::verify::with_spinner;
+use judged::Judged;
 
 /// Checks every file; the exit code is the worst of them.
 pub(crate) fn run(files: &[PathBuf], doubts: &Doubts, full: bool) -> u8 {
@@ -38,12 +41,40 @@ pub(crate) fn run(files: &[PathBuf], doubts: &Doubts, full: bool) -> u8 {
     worst
 }
 
-/// What is made of warnings.
+/// Checks every file and prints one document for programs; files that cannot be read are not in it.
+pub(crate) fn run_for_programs(files: &[PathBuf], doubts: &Doubts, form: Form) -> u8 {
+    let (mut worst, mut readable) = (DONE, Vec::new());
+    for file in files {
+        match Judged::of(file, doubts) {
+            Ok(judged) => {
+                worst = worst.max(judged.code);
+                readable.push(judged);
+            }
+            Err(code) => worst = worst.max(code),
+        }
+    }
+    let document = match form {
+        Form::Json => json::document(&readable),
+        Form::Sarif => sarif::document(&readable),
+    };
+    worst.max(terminal::print(&format!("{document}\n")))
+}
+
+/// Forms of the document for programs.
+#[derive(Clone, Copy, Debug)]
+pub(crate) enum Form {
+    /// A form of armgen's own.
+    Json,
+    /// SARIF 2.1.0.
+    Sarif,
+}
+
+/// The treatment of warnings.
 #[derive(Debug)]
 pub(crate) struct Doubts {
-    /// They are failures.
+    /// Warnings are failures.
     pub(crate) strict: bool,
-    /// Kinds of which nothing is said.
+    /// Kinds that are hidden.
     pub(crate) allow: Vec<String>,
 }
 
@@ -63,7 +94,7 @@ fn checked(file: &Path, doubts: &Doubts, full: bool) -> Result<(String, u8), u8>
         )
     });
     if let Some(fault) = too_large {
-        // What else there is to say has been said.
+        // The other diagnostics are already printed.
         let mut faults = Diagnostics::new();
         faults.push(*fault);
         terminal::diagnose(&faults.render(&source, terminal::colour(&std::io::stderr())));
@@ -81,11 +112,11 @@ fn checked(file: &Path, doubts: &Doubts, full: bool) -> Result<(String, u8), u8>
     Ok((summary, code))
 }
 
-/// What is left to the reader.
+/// The comparison that is left to the reader.
 const ADVICE: &str =
     "  A valid file may still be wrong: compare the posture at q = 0 with a drawing,\n  or with the arm itself by `armgen page`.\n";
 
-/// What the short summary leaves out.
+/// The tables that the short summary leaves out.
 const MORE: &str = "  `--full` adds limits, drives, inertias as boxes, frames, and what a motion can identify.\n";
 
 fn summary(source: &Source, description: &RobotDescription, model: &Model, diagnostics: &Diagnostics, full: bool) -> String {
@@ -199,7 +230,7 @@ fn arm(source: &Source, description: &RobotDescription, manipulator: &Manipulato
     table.text()
 }
 
-/// What columns are, each with its name before a colon, in lines below their table; empty parts are left out.
+/// The meaning of columns, each after its name and a colon, in lines below their table; empty parts are left out.
 fn legend(parts: &[&str]) -> String {
     let text = parts.iter().copied().filter(|part| !part.is_empty()).collect::<Vec<_>>().join("; ");
     wrapped(&text, terminal::width() - 2).iter().map(|line| format!("  {line}\n")).collect()

@@ -1,6 +1,8 @@
-//! What `armgen check` says of a description.
+//! The output of `armgen check` about a description.
 
 use std::fs;
+
+use serde_json::Value;
 
 use super::{check, err, file, folder, out};
 
@@ -65,7 +67,7 @@ fn an_unreadable_file_gives_code_2() {
     check(&["check", &file("robots/scara.yaml"), &file("tests/bad/empty-file.yaml")], 1);
 }
 
-/// Two slides: without a turned tensor, a density, an axis beside the centres of mass.
+/// Two slides: without a turned tensor, a density, an axis away from the centres of mass.
 const CART: &str = "name: cart
 convention: standard
 gravity: [0, 0, -9.81]
@@ -144,25 +146,116 @@ fn summaries_fit_a_hundred_columns() {
     }
 }
 
+/// The document of docs/editors.md is that of its faulty file.
 #[test]
-fn programs_get_an_object_for_each_file() {
-    let output = check(&["check", "--format", "json", &file("robots/scara.yaml"), &file("tests/bad/many-faults.yaml")], 1);
-    let objects: Vec<serde_json::Value> =
-        out(&output).lines().map(|line| serde_json::from_str(line).expect("an object")).collect();
-    assert_eq!(objects.len(), 2);
+fn programs_get_the_document_of_the_page() {
+    let page = fs::read_to_string(file("docs/editors.md")).expect("the page");
+    let block =
+        |kind: &str| page.split(&format!("```{kind}\n")).nth(1).and_then(|rest| rest.split("```").next()).expect("a block");
+    let robot = folder("document").join("robot.yaml");
+    fs::write(&robot, block("yaml faulty")).expect("a file");
+    let output = check(&["check", "--format", "json", robot.to_str().expect("UTF-8")], 1);
+    let mut found: Value = serde_json::from_str(&out(&output)).expect("a document");
+    found["files"][0]["file"] = "robot.yaml".into();
+    let written: Value = serde_json::from_str(block("json")).expect("the document of the page");
+    assert_eq!(found, written, "{found:#}");
+    assert_eq!(err(&output), "");
+}
+
+/// Every file is in the document, but one that cannot be read; every place is that of the text output.
+#[test]
+fn programs_get_one_document_for_all_files() {
+    let (scara, faulty) = (file("robots/scara.yaml"), file("tests/bad/many-faults.yaml"));
+    let output = check(&["check", "--format", "json", &scara, &faulty, "absent.yaml"], 2);
+    assert!(err(&output).contains("absent.yaml") && err(&output).lines().count() == 1, "{}", err(&output));
+    let document: Value = serde_json::from_str(&out(&output)).expect("a document");
+    let files = document["files"].as_array().expect("a list");
+    assert_eq!((&document["version"], files.len()), (&1.into(), 2));
     assert_eq!(
-        (&objects[0]["valid"], &objects[0]["warnings"], &objects[0]["summary"]["robot"]),
+        (&files[0]["valid"], &files[0]["warnings"], &files[0]["summary"]["robot"]),
         (&true.into(), &1.into(), &"scara".into())
     );
-    assert_eq!(
-        (&objects[1]["valid"], &objects[1]["errors"], &objects[1]["summary"]),
-        (&false.into(), &17.into(), &serde_json::Value::Null)
-    );
-    for diagnostic in objects.iter().flat_map(|object| object["diagnostics"].as_array().expect("a list")) {
-        for key in ["code", "severity", "message", "label", "help", "file"] {
-            assert!(diagnostic[key].is_string(), "{key} of {diagnostic}");
+    assert_eq!((&files[1]["valid"], &files[1]["errors"], &files[1]["summary"]), (&false.into(), &17.into(), &Value::Null));
+    let joints = files[0]["summary"]["joints"].as_array().expect("a list");
+    let keys: Vec<&str> = joints[0].as_object().expect("a joint").keys().map(String::as_str).collect();
+    assert_eq!(keys, ["effort", "mass", "name", "position", "type", "velocity"]);
+    let text = err(&check(&["check", &scara, &faulty], 1));
+    let source = fs::read_to_string(&faulty).expect("a description");
+    for diagnostic in files.iter().flat_map(|file| file["diagnostics"].as_array().expect("a list")) {
+        for key in ["code", "severity", "message", "help"] {
+            assert!(diagnostic[key].as_str().is_some_and(|words| !words.is_empty()), "{key} of {diagnostic}");
         }
-        assert!(diagnostic["line"].is_u64() && diagnostic["column"].is_u64() && diagnostic["end"]["line"].is_u64());
+        let place = format!(".yaml:{}:{}\n", diagnostic["line"], diagnostic["column"]);
+        assert!(text.contains(&place), "{place} in {text}");
+        assert_eq!(diagnostic["labels"][0]["column"], diagnostic["column"]);
     }
-    assert_eq!(err(&output), "");
+    for label in files[1]["diagnostics"].as_array().expect("a list").iter().map(|diagnostic| &diagnostic["labels"][0]) {
+        let at = |key: &str| label[key].as_u64().expect("a byte") as usize;
+        assert!(at("start") < at("end") && !source[at("start")..at("end")].contains('\n'), "{label}");
+    }
+}
+
+/// The objects of SARIF 2.1.0 that armgen writes: their properties, those that are required, and the words of two of them
+/// (OASIS, *Static Analysis Results Interchange Format Version 2.1.0*, 2020, sections 3.13 to 3.52).
+const SARIF: &[(&str, &[&str], &[&str])] = &[
+    ("log", &["version", "runs"], &["$schema"]),
+    ("run", &["tool"], &["columnKind", "results"]),
+    ("tool", &["driver"], &[]),
+    ("driver", &["name"], &["version", "rules"]),
+    ("rule", &["id"], &["shortDescription", "defaultConfiguration"]),
+    ("configuration", &[], &["level"]),
+    ("result", &["message"], &["ruleId", "ruleIndex", "level", "locations", "relatedLocations"]),
+    ("message", &["text"], &[]),
+    ("location", &[], &["physicalLocation", "message"]),
+    ("physicalLocation", &["artifactLocation"], &["region"]),
+    ("artifactLocation", &["uri"], &[]),
+    ("region", &["startLine"], &["startColumn", "endLine", "endColumn"]),
+];
+
+#[track_caller]
+fn is_sarif(kind: &str, value: &Value) {
+    let (_, required, optional) = SARIF.iter().find(|(name, ..)| *name == kind).unwrap_or_else(|| panic!("{kind}"));
+    let object = value.as_object().unwrap_or_else(|| panic!("{kind} is an object: {value}"));
+    assert!(required.iter().all(|key| object.contains_key(*key)), "{kind}: {value}");
+    for (key, value) in object {
+        assert!(required.contains(&key.as_str()) || optional.contains(&key.as_str()), "{key} of {kind}");
+        let each = |kind: &str| value.as_array().expect("a list").iter().for_each(|item| is_sarif(kind, item));
+        match key.as_str() {
+            "runs" => each("run"),
+            "rules" => each("rule"),
+            "results" => each("result"),
+            "locations" | "relatedLocations" => each("location"),
+            "shortDescription" => is_sarif("message", value),
+            "defaultConfiguration" => is_sarif("configuration", value),
+            "tool" | "driver" | "message" | "physicalLocation" | "artifactLocation" | "region" => is_sarif(key, value),
+            "startLine" | "startColumn" | "endLine" | "endColumn" => assert!(value.as_u64().is_some_and(|n| n >= 1), "{value}"),
+            "ruleIndex" => assert!(value.is_u64(), "{value}"),
+            "level" => assert!(["error", "warning", "note", "none"].contains(&value.as_str().unwrap_or_default()), "{value}"),
+            "columnKind" => assert_eq!(value, "unicodeCodePoints"),
+            _ => assert!(value.is_string(), "{key}: {value}"),
+        }
+    }
+}
+
+#[test]
+fn code_scanning_gets_sarif() {
+    let files = [file("robots/scara.yaml"), file("tests/bad/many-faults.yaml"), file("tests/bad/duplicate-name.yaml")];
+    let arguments = [&["check", "--format", "sarif"][..], &files.each_ref().map(String::as_str)].concat();
+    let document: Value = serde_json::from_str(&out(&check(&arguments, 1))).expect("a document");
+    is_sarif("log", &document);
+    let run = &document["runs"][0];
+    let (rules, results) = (&run["tool"]["driver"]["rules"], run["results"].as_array().expect("a list"));
+    assert!(rules.as_array().is_some_and(|rules| rules.len() > 5) && results.len() > 17, "{document:#}");
+    for result in results {
+        let index = result["ruleIndex"].as_u64().expect("a number") as usize;
+        assert_eq!((&rules[index]["id"], &rules[index]["defaultConfiguration"]["level"]), (&result["ruleId"], &result["level"]));
+    }
+    let twice = results.iter().find(|result| result["ruleId"] == "duplicate-name").expect("the third file");
+    assert_eq!(twice["relatedLocations"].as_array().map(Vec::len), Some(1));
+}
+
+#[test]
+fn the_schema_is_that_of_the_documentation() {
+    let stored = fs::read_to_string(file("docs/robot.schema.json")).expect("the schema");
+    assert_eq!(out(&check(&["schema"], 0)), stored);
 }

@@ -1,111 +1,22 @@
-//! Tree of nodes -> [`RobotDescription`]: which keys there are, and what kind of value stands under each.
+//! Tree of nodes -> [`RobotDescription`]. [`keys`](super::keys) declares the keys and the kinds of their values.
 
+use super::keys::{
+    Entry, ATTACHED, CONVENTIONS, FRICTION, INERTIA, INVERSE_KINEMATICS, JOINT, JOINT_KINDS, LIMITS, LINK, MOST_POSES, MOTOR,
+    PAYLOAD, POSE, PRODUCTS, REGRESSORS, ROBOT, ROTATIONS, SPRING, STRIBECK, TARGETS, URDF_JOINT,
+};
 use super::other_formats::{OTHER_NAMES, OTHER_PLACES};
 use super::units::{UnitKey, KEYS};
 use super::{
     AttachedDescription, BodyDescription, Convention, FrictionDescription, InertiaDescription, JointDescription,
     LimitsDescription, MotorDescription, NamedUnit, ParameterDescription, PoseDescription, PoseElement, PosturesDescription,
-    Products, RegressorDescription, RobotDescription, RotationDescription, SpringDescription, StribeckDescription, Value,
-    INERTIA_ELEMENTS,
+    RegressorDescription, RobotDescription, RotationDescription, SpringDescription, StribeckDescription, Value, INERTIA_ELEMENTS,
 };
 use crate::diagnostic::{Code, Diagnostics};
-use crate::document::reader::{first_key, optional, required, usual, Fields, Key, Reader};
+use crate::document::reader::{first_key, optional, Fields, Reader};
 use crate::document::yaml::{Kind, Node};
 use crate::document::{excerpt, Expression, Unit};
-use crate::kinds::{JointKind, Target, TaskRow};
+use crate::kinds::TaskRow;
 use crate::source::{Source, Span, Spanned};
-
-const ROBOT: &[Key] = &[
-    required("name", "name: my_robot"),
-    required("convention", "convention: standard"),
-    required("gravity", "gravity: [0, 0, -9.81]"),
-    optional("units"),
-    optional("products"),
-    optional("parameters"),
-    optional("base"),
-    required("joints", "joints:` and below it one `- name: ..."),
-    optional("tool"),
-    optional("payload"),
-    optional("task"),
-    optional("regressor"),
-    optional("inverse_kinematics"),
-    optional("allow"),
-];
-const JOINT: &[Key] = &[
-    required("name", "name: shoulder"),
-    required("type", "type: revolute"),
-    required("a", "a: 0.5"),
-    required("alpha", "alpha: pi/2"),
-    required("d", "d: 0"),
-    required("theta", "theta: 0"),
-    optional("limits"),
-    required("link", "link: {mass: 5}"),
-    optional("motor"),
-    optional("friction"),
-    optional("spring"),
-    optional("armature"),
-];
-/// The keys of a joint whose row is not one of Denavit and Hartenberg.
-const URDF_JOINT: &[Key] = &[
-    required("name", "name: shoulder"),
-    required("type", "type: revolute"),
-    optional("origin"),
-    required("axis", "axis: [0, 0, 1]"),
-    optional("limits"),
-    required("link", "link: {mass: 5}"),
-    optional("motor"),
-    optional("friction"),
-    optional("spring"),
-    optional("armature"),
-];
-const INVERSE_KINEMATICS: &[Key] = &[optional("target"), optional("given")];
-const LIMITS: &[Key] = &[usual("position", "position: [-pi/2, pi/2]"), optional("velocity"), optional("effort")];
-const LINK: &[Key] = &[required("mass", "mass: 5"), optional("com"), optional("inertia"), optional("attached")];
-const ATTACHED: &[Key] =
-    &[optional("name"), optional("origin"), required("mass", "mass: 0.5"), optional("com"), optional("inertia")];
-const PAYLOAD: &[Key] = &[usual("mass", "mass: 1.5"), optional("com"), optional("inertia")];
-const INERTIA: &[Key] = &[
-    usual("xx", "xx: 0.01"),
-    usual("yy", "yy: 0.02"),
-    usual("zz", "zz: 0.015"),
-    optional("xy"),
-    optional("xz"),
-    optional("yz"),
-    optional("rpy"),
-    optional("quat"),
-    optional("axis"),
-    optional("angle"),
-    optional("xyaxes"),
-];
-const MOTOR: &[Key] = &[
-    usual("ratio", "ratio: 100"),
-    optional("inertia"),
-    optional("mass"),
-    optional("position"),
-    optional("axis"),
-    optional("viscous"),
-];
-const FRICTION: &[Key] = &[
-    usual("viscous", "viscous: 0.2"),
-    optional("coulomb"),
-    optional("offset"),
-    optional("cubic"),
-    optional("load"),
-    optional("stribeck"),
-];
-const STRIBECK: &[Key] = &[required("torque", "torque: 2.5"), required("velocity", "velocity: 0.05")];
-const SPRING: &[Key] = &[required("stiffness", "stiffness: 200"), optional("rest")];
-const POSE: &[Key] = &[
-    usual("xyz", "xyz: [0, 0, 0.1]"),
-    optional("rpy"),
-    optional("quat"),
-    optional("axis"),
-    optional("angle"),
-    optional("xyaxes"),
-];
-
-/// Poses in one list.
-const MOST_POSES: usize = 64;
 
 /// The description that the tree holds.
 pub(super) fn read(source: &Source, root: Option<&Node>, diagnostics: &mut Diagnostics) -> Option<RobotDescription> {
@@ -120,9 +31,8 @@ impl Reader<'_> {
         let first = first_key(root);
         let Some(fields) = self.mapping(root, "the description", first, ROBOT) else { return RobotDescription::default() };
         let convention = fields.get("convention").and_then(|(key, node)| {
-            let words = [("standard", Convention::Standard), ("modified", Convention::Modified), ("urdf", Convention::Urdf)];
             let help = "`standard`: Rz(theta) Tz(d) Tx(a) Rx(alpha) (Siciliano); `modified`: Rx(alpha) Tx(a) Rz(theta) Tz(d) (Craig, Khalil); `urdf`: `origin` and `axis`";
-            self.choice(node, key, "convention", &words, Code::UnknownConvention, help)
+            self.choice(node, key, "convention", &CONVENTIONS, Code::UnknownConvention, help)
         });
         let convention = convention.filter(|convention| !self.rows_of_another_convention(convention, &fields));
         let rows = match convention.as_ref().map(|c| c.value) {
@@ -135,9 +45,8 @@ impl Reader<'_> {
             gravity: fields.get("gravity").and_then(|(key, node)| self.vector(node, key, "gravity", ["x", "y", "z"])),
             units: fields.get("units").map_or_else(Vec::new, |(key, node)| self.units(node, key)),
             products: fields.get("products").and_then(|(key, node)| {
-                let words = [("tensor", Products::Tensor), ("integral", Products::Integral)];
                 let help = "`tensor`: xy is the element -∫xy dm of the inertia tensor; `integral`: xy is ∫xy dm, which has the other sign";
-                self.choice(node, key, "products", &words, Code::UnknownProducts, help)
+                self.choice(node, key, "products", &PRODUCTS, Code::UnknownProducts, help)
             }),
             parameters: fields.get("parameters").map_or_else(Vec::new, |(key, node)| self.parameters(node, key)),
             joints: fields.get("joints").and_then(|(key, node)| self.joints(node, key, rows)),
@@ -195,14 +104,14 @@ impl Reader<'_> {
         entries.iter().map(read).collect()
     }
 
-    fn joints(&mut self, node: &Node, key: Span, rows: &'static [Key]) -> Option<Spanned<Vec<JointDescription>>> {
+    fn joints(&mut self, node: &Node, key: Span, rows: &'static [Entry]) -> Option<Spanned<Vec<JointDescription>>> {
         let items = self.list(node, key, "joints", "a list", "write one `- name: ...` per joint, from base to tip")?;
         let joints = items.iter().filter_map(|item| self.joint(item, rows)).collect::<Vec<_>>();
-        // A joint that is no mapping is reported; the others keep their numbers only in messages.
+        // A joint that is not a mapping is reported; afterwards the others keep their numbers only in messages.
         (!joints.is_empty() || items.is_empty()).then(|| Spanned::new(joints, key))
     }
 
-    fn joint(&mut self, node: &Node, keys: &'static [Key]) -> Option<JointDescription> {
+    fn joint(&mut self, node: &Node, keys: &'static [Entry]) -> Option<JointDescription> {
         let span = first_key(node);
         let fields = self.mapping(node, "a joint", span, keys)?;
         let name = fields.get("name").and_then(|(key, node)| self.word(node, key, "name"));
@@ -211,9 +120,8 @@ impl Reader<'_> {
         Some(JointDescription {
             name,
             kind: fields.get("type").and_then(|(key, node)| {
-                let words = [("revolute", JointKind::Revolute), ("prismatic", JointKind::Prismatic)];
                 let help = "`revolute`: turns about its z axis; `prismatic`: slides along it. Leave a fixed joint out: it is part of its link";
-                self.choice(node, key, "type", &words, Code::UnknownJointType, help)
+                self.choice(node, key, "type", &JOINT_KINDS, Code::UnknownJointType, help)
             }),
             a: self.field(&fields, "a"),
             alpha: self.field(&fields, "alpha"),
@@ -252,7 +160,7 @@ impl Reader<'_> {
         })
     }
 
-    fn body(&mut self, node: &Node, key: Span, what: &str, keys: &'static [Key]) -> Option<BodyDescription> {
+    fn body(&mut self, node: &Node, key: Span, what: &str, keys: &'static [Entry]) -> Option<BodyDescription> {
         let fields = self.mapping(node, what, key, keys)?;
         let attached = fields.get("attached").and_then(|(key, node)| {
             let help = "write one `- name: ...` per body, with `origin`, `mass`, `com` and `inertia`";
@@ -319,9 +227,9 @@ impl Reader<'_> {
         Some(pose)
     }
 
-    /// The rotation among the keys of a mapping, if there is one, and whether all of it could be read.
+    /// The rotation among the keys of a mapping, if any, and whether the whole of it was readable.
     fn rotation(&mut self, fields: &Fields<'_>) -> (Option<RotationDescription>, bool) {
-        let given: Vec<&str> = ["rpy", "quat", "axis", "xyaxes"].into_iter().filter(|key| fields.has(key)).collect();
+        let given: Vec<&str> = ROTATIONS.into_iter().filter(|key| fields.has(key)).collect();
         if let [first, second, ..] = given[..] {
             let message = format!("two rotations stand here: `{first}` and `{second}`");
             let help = "one pose turns once; write a list of poses for turns one after another";
@@ -384,12 +292,10 @@ impl Reader<'_> {
 
     fn inverse_kinematics(&mut self, node: &Node, key: Span) -> Option<PosturesDescription> {
         let fields = self.mapping(node, "`inverse_kinematics`", key, INVERSE_KINEMATICS)?;
-        let words =
-            [("pose", Target::Pose), ("position", Target::Position), ("planar", Target::Planar), ("pointing", Target::Pointing)];
         let help = "`pose`: of the end effector; `position`: of its origin; `planar`: the rows of `task`, one of them angular; \
                     `pointing`: its position and the direction of its z axis";
         let target =
-            fields.get("target").and_then(|(key, node)| self.choice(node, key, "target", &words, Code::UnknownTarget, help));
+            fields.get("target").and_then(|(key, node)| self.choice(node, key, "target", &TARGETS, Code::UnknownTarget, help));
         let given = fields.get("given").and_then(|(key, node)| self.word(node, key, "given"));
         Some(PosturesDescription { target, given })
     }
@@ -403,8 +309,8 @@ impl Reader<'_> {
     fn regressor(&mut self, node: &Node, key: Span) -> Option<Spanned<RegressorDescription>> {
         let help = "write `standard`, `base`, or a list of names: `regressor: [m1, m2]`";
         match &node.kind {
-            Kind::Scalar(s) if s.text == "standard" => Some(Spanned::new(RegressorDescription::Standard, key)),
-            Kind::Scalar(s) if s.text == "base" => Some(Spanned::new(RegressorDescription::Base, key)),
+            Kind::Scalar(s) if s.text == REGRESSORS[0] => Some(Spanned::new(RegressorDescription::Standard, key)),
+            Kind::Scalar(s) if s.text == REGRESSORS[1] => Some(Spanned::new(RegressorDescription::Base, key)),
             Kind::List(items) if items.is_empty() => {
                 let help = "list names of `parameters`, or leave the key out for `standard`";
                 self.report(Code::EmptyList, node.span, "`regressor` names no parameter", "empty", help);
@@ -432,7 +338,7 @@ impl Reader<'_> {
 
     /// A list of exactly as many numbers as there are `parts`.
     fn vector<const N: usize>(&mut self, node: &Node, key: Span, name: &str, parts: [&str; N]) -> Option<Spanned<[Value; N]>> {
-        // Whoever copies the help shall have what is valid, and shall not lose gravity.
+        // A copied example must be valid, and must not switch gravity off.
         let example = match (name, N) {
             ("gravity", _) => "0, 0, -9.81".to_owned(),
             ("axis", _) => "0, 0, 1".to_owned(),

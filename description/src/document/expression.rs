@@ -7,7 +7,7 @@
 //! atom    = decimal | "pi" | name | ("deg" | "sqrt") "(" sum ")" | "(" sum ")"
 //! ```
 //!
-//! A decimal is exactly the fraction that its digits say. Every part of the tree knows its place in the file.
+//! A decimal is exactly the fraction of its digits. Every part of the tree knows its place in the file.
 
 mod units;
 
@@ -25,8 +25,8 @@ use crate::source::{Source, Span};
 const MAX_DEPTH: usize = 32;
 /// Operators between two operands: a sum of so many terms is a tree as deep, and everything that reads it goes down as deep.
 const MAX_OPERATORS: usize = 128;
-/// Characters of an expression.
-const MAX_TEXT: usize = 2000;
+/// Bytes of an expression.
+pub(crate) const MAX_TEXT: usize = 2000;
 /// Digits of a decimal.
 const MAX_DIGITS: usize = 200;
 /// Powers of ten of a decimal, either way.
@@ -55,9 +55,9 @@ pub fn multiple_of_pi(n: i64) -> String {
 /// An expression and its place.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Expression {
-    /// What it is.
+    /// Its kind.
     pub kind: ExpressionKind,
-    /// Where it stands.
+    /// Its place.
     pub span: Span,
 }
 
@@ -188,7 +188,7 @@ impl Expression {
         Expression { kind: ExpressionKind::InUnit(Box::new(self), unit), span }
     }
 
-    /// Its text in SI units: as it stands in the file, but for a value in a unit of the file, which is converted exactly.
+    /// Its text in SI units: the text of the file, or the exact conversion of a value in a unit of the file.
     pub fn text(&self, source: &Source) -> String {
         let ExpressionKind::InUnit(value, unit) = &self.kind else {
             return source.slice(self.span).trim_matches(['"', '\'']).to_owned();
@@ -455,7 +455,7 @@ impl<'a> Parser<'a> {
                 let help = "write the power of ten as in `1e-3`, or `*` between a number and a name";
                 return Err(self.error(mark, self.at, "a power of ten without digits", help));
             }
-            // Whatever does not fit is far beyond MAX_POWER.
+            // A power that does not fit is far beyond MAX_POWER.
             let size = self.text[range].parse::<i64>().unwrap_or(i64::MAX / 2);
             power = if negative { -size } else { size };
         }

@@ -1,6 +1,8 @@
-//! Keys and kinds of values: what a tree of nodes must look like, and what is said where it does not.
+//! Keys and kinds of values: the required form of a tree of nodes, and the messages about deviations.
 //!
 //! A reader goes on after every fault, so that all faults of a file come in one go: a value that cannot be read is `None`, and reported.
+
+use std::borrow::Borrow;
 
 use super::yaml::{Kind, Node};
 use super::{excerpt, expression, Expression};
@@ -11,18 +13,20 @@ use crate::suggest::did_you_mean;
 /// A key that a mapping may hold.
 #[derive(Clone, Copy, Debug)]
 pub struct Key {
-    name: &'static str,
-    required: bool,
-    /// How it is written, for the help where it is missing, or where something else stands than the mapping that holds it.
+    /// The key.
+    pub name: &'static str,
+    /// Whether its mapping must have it.
+    pub required: bool,
+    /// An example of the key with a value, for the help; empty if there is no example.
     example: &'static str,
 }
 
-/// A key that must stand in its mapping, and how it is written.
+/// A key that its mapping must have, and an example.
 pub const fn required(name: &'static str, example: &'static str) -> Key {
     Key { name, required: true, example }
 }
 
-/// A key that may be left out, but usually stands in its mapping, and how it is written.
+/// A key that its mapping usually has but may omit, and an example.
 pub const fn usual(name: &'static str, example: &'static str) -> Key {
     Key { name, required: false, example }
 }
@@ -50,24 +54,25 @@ impl<'n> Fields<'n> {
         self.get(name).is_some()
     }
 
-    /// Where the mapping begins: the place of what is missing in it.
+    /// The beginning of the mapping: the place of diagnostics about missing keys.
     pub fn at(&self) -> Span {
         self.at
     }
 
-    /// Place of a key, or of the mapping where there is none.
+    /// Place of a key; if the key is absent, place of the mapping.
     pub fn place(&self, name: &str) -> Span {
         self.get(name).map_or(self.at, |(span, _)| span)
     }
 }
 
-/// Reads values; what is wrong goes to the diagnostics.
+/// Reads values; faults go to the diagnostics.
 #[derive(Debug)]
 pub struct Reader<'d> {
     diagnostics: &'d mut Diagnostics,
-    /// Keys that other formats use, and what they are called here.
+    /// Keys that other formats use, and the keys of this format with the same meaning.
     other_names: &'static [(&'static str, &'static str)],
-    /// Keys of other formats that are no key here, each with a key beside which it is out of place, and what to write instead.
+    /// Keys of other formats without an equivalent here. The second word is a key of a mapping in which the first is out of place;
+    /// the third is the help.
     other_places: &'static [(&'static str, &'static str, &'static str)],
 }
 
@@ -77,7 +82,7 @@ impl<'d> Reader<'d> {
         Reader { diagnostics, other_names: &[], other_places: &[] }
     }
 
-    /// The same with keys that other formats use for what has another name here.
+    /// The same with keys of other formats that have another name here.
     #[must_use]
     pub fn with_other_names(self, other_names: &'static [(&'static str, &'static str)]) -> Reader<'d> {
         Reader { other_names, ..self }
@@ -134,14 +139,15 @@ impl<'d> Reader<'d> {
     }
 
     /// The keys of a mapping; unknown and missing ones are reported, the latter at `at`.
-    pub fn mapping<'n>(&mut self, node: &'n Node, what: &str, at: Span, keys: &[Key]) -> Option<Fields<'n>> {
+    pub fn mapping<'n>(&mut self, node: &'n Node, what: &str, at: Span, keys: &[impl Borrow<Key>]) -> Option<Fields<'n>> {
+        let keys: Vec<&Key> = keys.iter().map(Borrow::borrow).collect();
         let names: Vec<&'static str> = keys.iter().map(|key| key.name).collect();
         let Kind::Mapping(entries) = &node.kind else {
             if !self.keys_without_space(node).is_empty() {
                 return None;
             }
             let expected = format!("{what} is a mapping of keys to values, found {}", node.describe());
-            let help = format!("{}keys here: {}", written_out(node, what, keys), names.join(", "));
+            let help = format!("{}keys here: {}", written_out(node, what, &keys), names.join(", "));
             self.report(Code::WrongKind, visible(node, at), expected, "not `key: value`", help);
             return None;
         };
@@ -195,7 +201,7 @@ impl<'d> Reader<'d> {
                 fields.entries.push((meant, key.span, value));
             }
         }
-        let missing: Vec<&Key> = keys.iter().filter(|key| key.required && !fields.has(key.name)).collect();
+        let missing: Vec<&Key> = keys.iter().copied().filter(|key| key.required && !fields.has(key.name)).collect();
         if !missing.is_empty() {
             let names: Vec<String> = missing.iter().map(|key| format!("`{}`", key.name)).collect();
             let examples: Vec<String> = missing.iter().map(|key| format!("`{}`", key.example)).collect();
@@ -229,7 +235,7 @@ impl<'d> Reader<'d> {
         }
     }
 
-    /// A text that is no list and no mapping; `expected` says of what kind, as in "a name".
+    /// A text that is neither a list nor a mapping; `expected` is its kind, as in "a name".
     pub fn text(&mut self, node: &Node, key: Span, name: &str, expected: &str, help: &str) -> Option<Spanned<String>> {
         match &node.kind {
             Kind::Scalar(s) if !s.is_nothing() => Some(Spanned::new(s.text.clone(), node.span)),
@@ -268,7 +274,7 @@ impl<'d> Reader<'d> {
         None
     }
 
-    /// Reports that something else stands where `expected` is to stand.
+    /// Reports a value of another kind than `expected`.
     pub fn wrong_kind(&mut self, node: &Node, key: Span, name: &str, expected: &str, help: &str) {
         let found = match &node.kind {
             Kind::Scalar(s) if !s.is_nothing() => format!("`{}`", excerpt(&s.text)),
@@ -279,7 +285,7 @@ impl<'d> Reader<'d> {
     }
 }
 
-/// What to write where `{mass: 1,2}` has made a key of what stands behind the comma.
+/// The help for `{mass: 1,2}`, where YAML makes a key of the digits after the comma.
 fn decimal_comma((before, value): &(Spanned<String>, Node), key: &Spanned<String>, behind: &Node) -> Option<String> {
     let (Kind::Scalar(whole), Kind::Scalar(nothing)) = (&value.kind, &behind.kind) else { return None };
     let is_number = |text: &str| !text.is_empty() && text.bytes().all(|b| b.is_ascii_digit());
@@ -288,8 +294,9 @@ fn decimal_comma((before, value): &(Spanned<String>, Node), key: &Spanned<String
     fits.then(|| format!("write `{}: {}.{}`", excerpt(&before.value), excerpt(&whole.text), excerpt(&key.value)))
 }
 
-/// How a mapping is written where `node` stands instead, if its keys have examples: a lone number goes under the key that is a number alone.
-fn written_out(node: &Node, what: &str, keys: &[Key]) -> String {
+/// An example of the mapping that `node` should be, if its keys have examples. A lone number becomes the value of the only key with an
+/// example, if that is a number.
+fn written_out(node: &Node, what: &str, keys: &[&Key]) -> String {
     let examples: Vec<&str> = keys.iter().map(|key| key.example).filter(|example| !example.is_empty()).collect();
     // `inf` and `nan` are floats, but no values.
     let is_number = |text: &str| text.parse::<f64>().is_ok_and(f64::is_finite);
@@ -315,7 +322,7 @@ pub fn first_key(node: &Node) -> Span {
     }
 }
 
-/// The node's place, or its key's where nothing stands.
+/// The node's place; its key's place if the node is empty.
 fn visible(node: &Node, key: Span) -> Span {
     if node.span.start < node.span.end {
         node.span

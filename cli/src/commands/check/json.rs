@@ -1,60 +1,34 @@
-//! `armgen check --format json`: one object a line for each file, for programs.
+//! `armgen check --format json`: one document for all files; `docs/editors.md` describes it.
 //!
-//! Keys keep their names and meaning; new ones may be added.
-
-use std::path::{Path, PathBuf};
+//! Keys keep their names and meaning within a version; new ones may be added.
 
 use armgen_codegen::derive::parameters::nominal;
-use armgen_codegen::diagnostic::{Diagnostic, Diagnostics, Severity};
+use armgen_codegen::diagnostic::{Diagnostic, Severity};
 use armgen_codegen::exact::{Number, Polynomial};
-use armgen_codegen::kinds::{JointKind, Scalar};
+use armgen_codegen::kinds::JointKind;
 use armgen_codegen::manipulator::Manipulator;
-use armgen_codegen::schedule::Options;
 use armgen_codegen::source::{Source, Span};
-use armgen_codegen::{validate, Model};
 use serde_json::{json, Value};
 
-use super::Doubts;
-use crate::{input, terminal, DONE, FAULTY};
+use super::judged::Judged;
 
-pub(crate) fn run(files: &[PathBuf], doubts: &Doubts) -> u8 {
-    let mut worst = DONE;
-    for file in files {
-        let code = match checked(file, doubts) {
-            Ok((object, code)) => code.max(terminal::print(&format!("{object}\n"))),
-            Err(code) => code,
-        };
-        worst = worst.max(code);
-    }
-    worst
+/// The version of the form.
+const VERSION: u32 = 1;
+
+pub(super) fn document(files: &[Judged]) -> Value {
+    json!({ "version": VERSION, "files": files.iter().map(of_file).collect::<Vec<_>>() })
 }
 
-fn checked(file: &Path, doubts: &Doubts) -> Result<(Value, u8), u8> {
-    let source = input::source(file)?;
-    let (valid, mut diagnostics) = validate::read_for(&source, Scalar::F64);
-    diagnostics.allow(&doubts.allow);
-    let mut summary = Value::Null;
-    if let Some((manipulator, places)) = valid {
-        let model = Model::new(manipulator);
-        match armgen_codegen::programs(&model, &places, &Options::default()) {
-            Ok(_) => summary = of_arm(&model.manipulator),
-            Err(fault) => {
-                let mut faults = Diagnostics::new();
-                faults.push(*fault);
-                diagnostics.extend(faults);
-            }
-        }
-    }
-    let code = if diagnostics.has_errors() || doubts.strict && diagnostics.warnings() > 0 { FAULTY } else { DONE };
-    let object = json!({
+fn of_file(file: &Judged) -> Value {
+    let Judged { source, arm, diagnostics, .. } = file;
+    json!({
         "file": source.name(),
         "valid": !diagnostics.has_errors(),
         "errors": diagnostics.errors(),
         "warnings": diagnostics.warnings(),
-        "summary": summary,
-        "diagnostics": diagnostics.iter().map(|diagnostic| of_diagnostic(diagnostic, &source)).collect::<Vec<_>>(),
-    });
-    Ok((object, code))
+        "summary": arm.as_ref().map(of_arm),
+        "diagnostics": diagnostics.iter().map(|diagnostic| of_diagnostic(diagnostic, source)).collect::<Vec<_>>(),
+    })
 }
 
 /// The arm in SI units.
@@ -84,46 +58,27 @@ fn of_arm(arm: &Manipulator) -> Value {
 }
 
 fn of_diagnostic(diagnostic: &Diagnostic, source: &Source) -> Value {
-    let place = |span: Span| {
-        let (start, end) = (source.place(span.start), source.place(span.end));
-        (start.line, start.column, json!({ "line": end.line, "column": end.column }))
-    };
-    let (line, column, end) = place(diagnostic.span());
-    let others: Vec<Value> = diagnostic.labels[1..]
+    let mut object = place(diagnostic.span(), source);
+    object["code"] = json!(diagnostic.code.name());
+    object["severity"] = json!(if diagnostic.code.severity() == Severity::Error { "error" } else { "warning" });
+    object["message"] = json!(diagnostic.message);
+    object["help"] = json!(diagnostic.help);
+    object["labels"] = diagnostic
+        .labels
         .iter()
         .map(|label| {
-            let (line, column, end) = place(label.span);
-            json!({ "label": label.text, "line": line, "column": column, "end": end })
+            let mut object = place(label.span, source);
+            object["text"] = json!(label.text);
+            object["start"] = json!(label.span.start);
+            object["end"] = json!(label.span.end);
+            object
         })
         .collect();
-    json!({
-        "code": diagnostic.code.name(),
-        "severity": if diagnostic.code.severity() == Severity::Error { "error" } else { "warning" },
-        "message": diagnostic.message,
-        "label": diagnostic.labels[0].text,
-        "help": diagnostic.help,
-        "file": source.name(),
-        "line": line,
-        "column": column,
-        "end": end,
-        "others": others,
-    })
+    object
 }
 
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn an_object_has_places_and_words() {
-        let text = "name: a\nconvention: standard\ngravity: [0, 0, -9.81]\njoints:\n  - {name: j, type: revolute, a: 145, alpha: 0, d: 0, theta: 0, link: {mass: 1}}\n";
-        let source = Source::new("a.yaml", text);
-        let (_, diagnostics) = validate::read(&source);
-        let reach = diagnostics.iter().find(|d| d.code.name() == "implausible-reach").expect("a length in mm");
-        let object = of_diagnostic(reach, &source);
-        assert_eq!(object["severity"], "warning");
-        assert_eq!((&object["line"], &object["column"]), (&json!(5), &json!(34)));
-        assert_eq!(object["end"], json!({ "line": 5, "column": 37 }));
-        assert!(object["help"].as_str().is_some_and(|help| help.contains("write 0.145")), "{object}");
-    }
+/// Lines and columns from 1, columns in characters; the end lies after the last character.
+fn place(span: Span, source: &Source) -> Value {
+    let (start, end) = (source.place(span.start), source.place(span.end));
+    json!({ "line": start.line, "column": start.column, "end_line": end.line, "end_column": end.column })
 }
