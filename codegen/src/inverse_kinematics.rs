@@ -166,6 +166,28 @@ impl InverseKinematics {
         }
     }
 
+    /// The names of the branches by number; empty where no solution has that branch.
+    pub fn branches(&self) -> Vec<String> {
+        let Some(last) = self.choices.last() else { return Vec::new() };
+        let bits = |ways: usize| ways.next_power_of_two().trailing_zeros();
+        let all = 1usize << (last.bit + bits(last.ways.len()));
+        let name = |number: usize| {
+            let mut left = number;
+            let mut words = Vec::new();
+            for choice in &self.choices {
+                let mask = (choice.ways.len().next_power_of_two() - 1) << choice.bit;
+                left &= !mask;
+                words.push(choice.ways[(number & mask) >> choice.bit].as_str());
+            }
+            if left == 0 {
+                words.join(", ")
+            } else {
+                String::new()
+            }
+        };
+        (0..all).map(name).collect()
+    }
+
     /// Whether no other class of its target is cheaper by much: neither a determinant nor a position that Newton's method finishes.
     fn is_cheap(&self) -> bool {
         match &self.construction {

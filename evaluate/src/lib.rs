@@ -2,6 +2,9 @@
 //!
 //! It hands the programs of `armgen-codegen`, which printers print, to `armgen-numbers`, which executes them. A result has the bits of the
 //! emitted Rust module that has the same scalar and the same sines, if that is not generated with fused operations.
+//! All solutions of inverse kinematics likewise ([`solver`]).
+
+mod postures;
 
 use std::collections::BTreeMap;
 
@@ -12,11 +15,13 @@ use armgen_codegen::program::{self as steps, Module};
 use armgen_codegen::ring::Symbol;
 use armgen_codegen::Trig;
 use armgen_numbers as numbers;
+pub use armgen_numbers::postures::{Postures, Solver, Unfit, Verdict};
 use armgen_numbers::{Angle, Function, Input, Operand, Operation, Operator, Output, Sines};
 pub use armgen_numbers::{Mismatch, Program, Workspace};
+pub use postures::{inverse_kinematics, solver};
 
 /// A scalar that programs are executed in.
-pub trait Scalar: numbers::Compiled {
+pub trait Scalar: numbers::Compiled + numbers::postures::Solved {
     /// The scalar nearest to a number.
     fn nearest(number: &Number) -> Self;
 }

@@ -56,9 +56,10 @@
 //! intersect or are parallel.
 //! [`Arrangement::of_arm`](f64::Arrangement::of_arm) puts a solution into the arm's order and takes the turned axes off.
 //!
-//! The text `solutions` makes of that what an emitted module returns. Before it the module says `DOF`, `MAX_SOLUTIONS`, `PRISMATIC` and
-//! `POSITION_LIMITS`; its function is then: not `is_pose(t)`, `Solutions::none(Verdict::Invalid)`; else `conclude` of the construction's
-//! solutions in the arm's order, `by_angle` for the general arm and two slides. Joints beyond `DOF` are virtual and dropped.
+//! [`conclude`](f64::conclude) makes joint variables with a verdict of a construction's solutions in the arm's order, `by_angle` for the general
+//! arm and two slides; joints beyond those of the arm are virtual and dropped. Where the pose is none ([`is_pose`](f64::is_pose)),
+//! [`Postures::none`](f64::Postures::none) says so.
+//! The text `solutions` is that for the arm of an emitted module, which says `DOF`, `MAX_SOLUTIONS`, `PRISMATIC` and `POSITION_LIMITS` before it.
 //!
 //! # What is near
 //!
@@ -101,6 +102,7 @@ macro_rules! blocks {
         include!("blocks/given.rs");
         include!("blocks/shoulder_elbow_wrist.rs");
         include!("blocks/virtual_joints.rs");
+        include!("blocks/postures.rs");
     };
 }
 

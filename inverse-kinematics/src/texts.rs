@@ -52,5 +52,6 @@ texts! {
     "given" needs ["frame", "branches"],
     "shoulder_elbow_wrist" needs ["frame", "turn", "two_links", "regional", "three_turns", "branches", "arrangement"],
     "virtual_joints" needs ["closure", "arrangement"],
-    "solutions" needs ["frame", "angles", "branches"],
+    "postures" needs ["frame", "angles", "branches"],
+    "solutions" needs ["postures"],
 }

@@ -1,9 +1,15 @@
 //! What the emitted module makes of a construction's solutions: verdicts, order, limits, the nearest posture.
 
 mod arm {
-    #![allow(dead_code, unreachable_pub, clippy::approx_constant, clippy::excessive_precision, clippy::eq_op)]
+    #![allow(
+        dead_code,
+        unreachable_pub,
+        clippy::approx_constant,
+        clippy::excessive_precision,
+        clippy::eq_op,
+        clippy::neg_cmp_op_on_partial_ord
+    )]
     use crate::common::Random;
-    use armgen_inverse_kinematics::f64::*;
 
     const DOF: usize = 2;
     const LENGTH: Real = 2.0;
@@ -11,7 +17,18 @@ mod arm {
     const PRISMATIC: [bool; DOF] = [false, true];
     const POSITION_LIMITS: [[Real; 2]; DOF] = [[3.0, 9.0], [-1.0, Real::INFINITY]];
 
+    // As in an emitted module: the methods of a type stand where the type does.
+    include!("../src/blocks/scalar_f64.rs");
+    include!("../src/blocks/frame.rs");
+    include!("../src/blocks/angles.rs");
+    include!("../src/blocks/line_and_circle.rs");
+    include!("../src/blocks/branches.rs");
+    include!("../src/blocks/postures.rs");
     include!("../src/blocks/solutions.rs");
+
+    fn concluded(found: &Branches<3, 4>, by_angle: bool) -> Solutions {
+        conclude(found, PRISMATIC, by_angle)
+    }
 
     fn branch(angle: Real, slide: Real, signs: u16) -> Branch<3> {
         Branch { joints: [[angle.cos(), angle.sin()], [slide, 0.0], [1.0, 0.0]], signs, double: false, error: 0.0, free: 0 }
@@ -27,23 +44,23 @@ mod arm {
     fn verdicts_and_their_order() {
         let regular = branch(1.0, 0.5, 0);
         let (double, free) = (Branch { double: true, ..regular }, Branch { free: 2, ..regular });
-        let verdict = |found: &Branches<3, 4>| conclude(found, false).verdict;
+        let verdict = |found: &Branches<3, 4>| concluded(found, false).verdict;
         assert_eq!(verdict(&with(&[])), Verdict::Unreachable);
         assert_eq!(verdict(&with(&[regular])), Verdict::Complete);
         assert_eq!(verdict(&with(&[regular, double])), Verdict::NearDouble);
         assert_eq!(verdict(&with(&[double, free])), Verdict::Continuum);
-        assert_eq!(conclude(&with(&[double, free]), false).all[1].free, 2);
+        assert_eq!(concluded(&with(&[double, free]), false).all[1].free, 2);
         assert_eq!(verdict(&Branches { near: true, ..with(&[]) }), Verdict::NearDouble);
         assert_eq!(verdict(&Branches { continuum: true, ..with(&[]) }), Verdict::Continuum);
         // A joint beyond those of the arm is virtual; that it can move is a continuum of nothing that is shown.
-        assert_eq!(conclude(&with(&[Branch { free: 4, ..regular }]), false).all[0].free, 0);
-        let none = conclude(&Branches { miss: 0.25, ..with(&[]) }, false);
+        assert_eq!(concluded(&with(&[Branch { free: 4, ..regular }]), false).all[0].free, 0);
+        let none = concluded(&Branches { miss: 0.25, ..with(&[]) }, false);
         assert_eq!((none.miss, none.count), (0.25, 0));
-        assert_eq!(conclude(&Branches { miss: 0.25, ..with(&[regular]) }, false).miss, 0.0);
+        assert_eq!(concluded(&Branches { miss: 0.25, ..with(&[regular]) }, false).miss, 0.0);
         // Not a number is no solution, and nothing is certain then.
         let infinite = Branch { joints: [[0.0, Real::INFINITY], [0.5, 0.0], [1.0, 0.0]], ..regular };
         for off in [branch(Real::NAN, 0.0, 0), infinite, branch(1.0, Real::NEG_INFINITY, 0)] {
-            let lost = conclude(&with(&[off, regular]), false);
+            let lost = concluded(&with(&[off, regular]), false);
             assert_eq!((lost.count, lost.verdict, lost.all[1].q), (1, Verdict::NearDouble, [0.0; 2]));
         }
     }
@@ -51,21 +68,21 @@ mod arm {
     #[test]
     fn order_and_zeros() {
         let found = with(&[branch(2.0, 0.0, 3), branch(-1.0, 0.5, 1), branch(-1.0, 0.25, 2)]);
-        let by_branch = conclude(&found, false);
+        let by_branch = concluded(&found, false);
         assert_eq!(by_branch.as_slice().iter().map(|s| s.branch).collect::<Vec<_>>(), [1, 2, 3]);
-        let by_angle = conclude(&found, true);
+        let by_angle = concluded(&found, true);
         assert_eq!(by_angle.as_slice().iter().map(|s| s.branch).collect::<Vec<_>>(), [2, 1, 3]);
         assert_eq!(by_angle.all[3].q, [0.0; 2]);
         // The half turn is pi, whichever way its sine is rounded.
         let half = Branch { joints: [[-1.0, -0.0], [0.0, 0.0], [1.0, 0.0]], ..branch(0.0, 0.0, 0) };
-        assert_eq!(conclude(&with(&[half]), false).all[0].q[0], std::f64::consts::PI);
+        assert_eq!(concluded(&with(&[half]), false).all[0].q[0], std::f64::consts::PI);
     }
 
     #[test]
     fn limits_by_whole_turns() {
         let turn = std::f64::consts::TAU;
         let found =
-            conclude(&with(&[branch(3.05, 0.0, 0), branch(-1.0, 0.0, 1), branch(3.05, -2.0, 2), branch(0.0, 0.0, 3)]), false);
+            concluded(&with(&[branch(3.05, 0.0, 0), branch(-1.0, 0.0, 1), branch(3.05, -2.0, 2), branch(0.0, 0.0, 3)]), false);
         let within = found.within_limits();
         assert_eq!(within.verdict, found.verdict);
         let q: Vec<_> = within.as_slice().iter().map(|s| (s.branch, s.q[0])).collect();
@@ -91,7 +108,7 @@ mod arm {
             let limit = random.below(3);
             let at = |dust: f64| {
                 let (angle, slide) = [(3.0 + dust, 0.5), (9.0 - dust, 0.5), (5.0, -1.0 + LENGTH * dust)][limit];
-                conclude(&with(&[branch(angle, slide, 0)]), false).within_limits()
+                concluded(&with(&[branch(angle, slide, 0)]), false).within_limits()
             };
             let q = at(dust).as_slice().first().expect("dropped").q;
             assert!((3.0..=9.0).contains(&q[0]) && -1.0 <= q[1], "{q:?}");
@@ -102,7 +119,7 @@ mod arm {
 
     #[test]
     fn nearest_modulo_turns() {
-        let found = conclude(&with(&[branch(3.0, 0.0, 0), branch(-1.0, 0.0, 1)]), false);
+        let found = concluded(&with(&[branch(3.0, 0.0, 0), branch(-1.0, 0.0, 1)]), false);
         let branch_at = |q: [Real; 2]| found.nearest_to(&q).map(|s| s.branch);
         assert_eq!(branch_at([-3.0, 0.0]), Some(0));
         assert_eq!(branch_at([-0.5 + 4.0 * std::f64::consts::PI, 0.0]), Some(1));

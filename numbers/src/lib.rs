@@ -7,6 +7,8 @@
 //! Every operation rounds by itself, in the order of the function: the bits are those of the same operations compiled, whatever the number of
 //! states and whatever the processor. Sines, cosines and the exponential are the compiled texts of `armgen-elementary`, or `libm`.
 //!
+//! All solutions of inverse kinematics are found by the compiled blocks of `armgen-inverse-kinematics` ([`postures`]).
+//!
 //! No state makes it panic: what is infinite or not a number goes through all operations as IEEE 754 says. [`Program::run`] allocates
 //! nothing; its [`Workspace`] is made before.
 //!
@@ -32,6 +34,7 @@
 
 mod execute;
 mod function;
+pub mod postures;
 mod program;
 mod scalar;
 #[cfg(test)]

@@ -25,7 +25,7 @@ use crate::kinds::Scalar;
 use crate::parallel::parallel_map;
 use crate::program::{Function, Module};
 pub(super) use inverse_kinematics::{
-    about_redundancy, about_target, branches, items as items_of_inverse_kinematics, meanings, what_is_invalid,
+    about_redundancy, about_target, items as items_of_inverse_kinematics, meanings, what_is_invalid,
 };
 pub use inverse_kinematics::{print_inverse_kinematics, print_inverse_kinematics_test, print_inverse_kinematics_trait};
 use literal::literal;

@@ -1,225 +1,23 @@
-// The result of inverse kinematics as the emitted module gives it.
+// Postures of the arm of an emitted module.
 // The module says before: DOF, MAX_SOLUTIONS, PRISMATIC: [bool; DOF], POSITION_LIMITS: [[Real; 2]; DOF] (lower and upper; infinite where there is none),
 // LENGTH: the arm's, m.
 
-/// What is known of all the solutions at a pose.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Verdict {
-    /// These are all solutions, as far as the construction can tell; a change of the pose by its rounding keeps their number.
-    Complete,
-    /// No solution was found, and none is near.
-    Unreachable,
-    /// A change of the pose by its own rounding could change the number of solutions; two that have met are listed once, as `double`, and two
-    /// that may have met each as `double`.
-    NearDouble,
-    /// Some joints can move while the end effector stays.
-    Continuum,
-    /// The pose has an entry that is not finite, or no rotation where that is asked for.
-    Invalid,
-}
+/// One posture of the arm.
+pub type Solution = Posture<DOF>;
 
-/// One posture.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Solution {
-    /// Joint variables: angles in (-pi, pi], rad; lengths.
-    pub q: [Real; DOF],
-    /// Which of the construction's ways leads here: a bit, or the two of a root's number, for each block in the order of its steps.
-    pub branch: u16,
-    /// Two solutions meet here.
-    pub double: bool,
-    /// Bit i: joint i + 1 has one of many values, which the construction chose: some joints can move while the end effector stays. The null space of
-    /// the Jacobian says which; one that has to move along with these may be without a bit.
-    pub free: u32,
-}
-
-/// All postures at a pose.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Solutions {
-    /// What is known of them.
-    pub verdict: Verdict,
-    /// How many there are.
-    pub count: usize,
-    /// Where there is none: by how much the construction missed. A hint for people, not a bound; otherwise 0.
-    pub miss: Real,
-    /// The postures; zeros from `count` on.
-    pub all: [Solution; MAX_SOLUTIONS],
-}
+/// All postures of the arm at a pose.
+pub type Solutions = Postures<DOF, MAX_SOLUTIONS>;
 
 impl Solutions {
-    /// No postures.
-    fn none(verdict: Verdict) -> Self {
-        let none = Solution { q: [0.0; DOF], branch: 0, double: false, free: 0 };
-        Solutions { verdict, count: 0, miss: 0.0, all: [none; MAX_SOLUTIONS] }
-    }
-
-    /// The postures, in order.
-    pub fn as_slice(&self) -> &[Solution] {
-        self.all.get(..self.count).unwrap_or(&self.all)
-    }
-
     /// The postures within `POSITION_LIMITS`, angles moved by whole turns into them: by none if that does, else by as few as possible.
     /// Rounding of the pose can move a joint variable by the root of the unit roundoff (rad; of a slide times `LENGTH`): so far beyond a limit it
     /// counts as within, and is put at the limit. The verdict stays what it was.
     pub fn within_limits(&self) -> Solutions {
-        let mut within = Solutions { miss: self.miss, ..Solutions::none(self.verdict) };
-        // Where two solutions meet the error of a joint is the root of the pose's, elsewhere it is smaller.
-        let error = sqrt(UNIT_ROUNDOFF);
-        for solution in self.as_slice() {
-            let mut moved = *solution;
-            let mut inside = true;
-            for ((q, [low, high]), prismatic) in moved.q.iter_mut().zip(POSITION_LIMITS).zip(PRISMATIC) {
-                let slack = if prismatic { error * LENGTH } else { error };
-                let (least, most) = (low - slack, high + slack);
-                if !prismatic {
-                    *q += WHOLE_TURN * whole_turns_between((least - *q) / WHOLE_TURN, (most - *q) / WHOLE_TURN);
-                }
-                inside &= least <= *q && *q <= most;
-                *q = q.max(low).min(high);
-            }
-            if let (true, Some(slot)) = (inside, within.all.get_mut(within.count)) {
-                *slot = moved;
-                within.count += 1;
-            }
-        }
-        within
+        self.within(POSITION_LIMITS, PRISMATIC, LENGTH)
     }
 
     /// The posture whose largest difference from `q` is smallest, angles modulo whole turns; the first of equals. None if there is none.
     pub fn nearest_to(&self, q: &[Real; DOF]) -> Option<&Solution> {
-        let mut nearest = None;
-        let mut least = Real::INFINITY;
-        for solution in self.as_slice() {
-            let mut largest: Real = 0.0;
-            for ((x, y), prismatic) in solution.q.iter().zip(q).zip(PRISMATIC) {
-                let difference = (x - y).abs();
-                let turns = if prismatic { 0.0 } else { rounded(difference / WHOLE_TURN) };
-                largest = largest.max((difference - turns * WHOLE_TURN).abs());
-            }
-            if largest < least {
-                (nearest, least) = (Some(solution), largest);
-            }
-        }
-        nearest
+        self.nearest(q, PRISMATIC)
     }
 }
-
-/// 2 pi.
-const WHOLE_TURN: Real = 2.0 * HALF_TURN;
-
-/// The nearest integer to x >= 0.
-fn rounded(x: Real) -> Real {
-    floor(x + 0.5)
-}
-
-/// The integer of least magnitude in [low, high]; 0 if there is none.
-fn whole_turns_between(low: Real, high: Real) -> Real {
-    if low > 0.0 {
-        let least = -floor(-low);
-        if least <= high {
-            return least;
-        }
-    } else if high < 0.0 {
-        let least = floor(high);
-        if least >= low {
-            return least;
-        }
-    }
-    0.0
-}
-
-/// Whether all entries are finite.
-fn all_finite(t: &[[Real; 4]; 4]) -> bool {
-    let mut sum = 0.0;
-    for row in t {
-        for x in row {
-            // NaN of an infinity, too.
-            sum += x - x;
-        }
-    }
-    sum == 0.0
-}
-
-/// Whether all entries of a pose are finite and its rotation is one, to 1e-6.
-fn is_pose(t: &[[Real; 4]; 4]) -> bool {
-    let [x, y, z, _] = t;
-    let rows = [[x[0], x[1], x[2]], [y[0], y[1], y[2]], [z[0], z[1], z[2]]];
-    let near = |value: Real, wanted: Real| (value - wanted).abs() <= NO_ROTATION;
-    let [u, v, w] = rows;
-    // Two unit vectors at a right angle, and the third is what they make it.
-    let square = near(dot(u, u), 1.0) && near(dot(v, v), 1.0) && near(dot(u, v), 0.0);
-    let third = cross(u, v);
-    let right = near(third[0], w[0]) && near(third[1], w[1]) && near(third[2], w[2]);
-    all_finite(t) && square && right
-}
-
-/// How far from orthonormal a rotation may be.
-const NO_ROTATION: Real = if UNIT_ROUNDOFF < 1e-10 { 1e-6 } else { ROUNDING };
-
-/// The solutions that a construction has found, as joint variables with their verdict. Joints beyond `DOF` are virtual: they are dropped.
-/// `by_angle`: in the order of the joint variables, for a construction without branches; else in that of the branches.
-#[inline]
-fn conclude<const J: usize, const N: usize>(found: &Branches<J, N>, by_angle: bool) -> Solutions {
-    let mut result = Solutions::none(Verdict::Complete);
-    let mut near = found.near;
-    let mut continuum = found.continuum;
-    // Branch and place of each, in this order. Few: by insertion.
-    let mut order = [0; N];
-    for (last, branch) in found.found().iter().enumerate() {
-        let mut place = last;
-        if let Some(slot) = order.get_mut(last) {
-            *slot = usize::from(branch.signs) * N + last;
-        }
-        while place > 0 && place < N && order[place] < order[place - 1] {
-            order.swap(place, place - 1);
-            place -= 1;
-        }
-    }
-    for number in order.iter().take(found.count) {
-        let Some(branch) = found.all.get(number % N) else { continue };
-        near |= branch.double;
-        let mut q = [0.0; DOF];
-        for ((q, point), prismatic) in q.iter_mut().zip(&branch.joints).zip(PRISMATIC) {
-            *q = if prismatic { point[0] } else { angle(*point) };
-        }
-        let finite = q.iter().fold(0.0, |sum, q| sum + q).is_finite();
-        let free = branch.free & FIRST_JOINTS;
-        continuum |= finite && free != 0;
-        match result.all.get_mut(result.count) {
-            Some(slot) if finite => {
-                *slot = Solution { q, branch: branch.signs, double: branch.double, free };
-                result.count += 1;
-            }
-            _ => near = true,
-        }
-    }
-    if by_angle {
-        // Few: insertion. Only the part that counts, so that the zeros stay behind.
-        let before = |x: &Solution, y: &Solution| {
-            let mut pairs = x.q.iter().zip(&y.q);
-            pairs.find(|(x, y)| x != y).is_some_and(|(x, y)| x < y)
-        };
-        for last in 1..result.count {
-            let mut place = last;
-            while place > 0 && place < MAX_SOLUTIONS && before(&result.all[place], &result.all[place - 1]) {
-                result.all.swap(place, place - 1);
-                place -= 1;
-            }
-        }
-    }
-    result.verdict = if continuum {
-        Verdict::Continuum
-    } else if near {
-        Verdict::NearDouble
-    } else if result.count > 0 {
-        Verdict::Complete
-    } else {
-        Verdict::Unreachable
-    };
-    if result.verdict == Verdict::Unreachable && found.miss < Real::INFINITY {
-        result.miss = found.miss;
-    }
-    result
-}
-
-/// The bits of `free` of the joints that the arm has.
-const FIRST_JOINTS: u32 = (1 << DOF) - 1;

@@ -260,7 +260,7 @@ fn given(value: &Value) -> Result<Given, String> {
 }
 
 const EXPORT: &str = "#[allow(unused_imports)]pubuseself::all_solutions::{inverse_kinematics,";
-const HEAD: &str = "Real,Solution,Solutions,Verdict,BRANCHES,DOF,MAX_SOLUTIONS};\
+const HEAD: &str = "Posture,Postures,Real,Solution,Solutions,Verdict,BRANCHES,DOF,MAX_SOLUTIONS};\
                     #[allow(dead_code,unreachable_pub,clippy::all,clippy::pedantic)]#[rustfmt::skip]modall_solutions{";
 const BEGIN: &str = "pubfninverse_kinematics(t:&[[Real;4];4])->Solutions{let[x,y,z,_]=*t;";
 const BEGIN_REDUNDANT: &str = "pubfninverse_kinematics(t:&[[Real;4];4],redundancy:Real)->Solutions{let[x,y,z,_]=*t;";
@@ -296,11 +296,11 @@ fn body(
     let name = |reader: &mut Reader<'_>, end: char| reader.until(end).map(str::to_owned);
     let all = joints_with_given(loops, dof);
     if reader.take(&if own {
-        "conclude(&without_virtual_joints::<6,DOF,16>(&ARM,&general_arm(&LOOPS,&t,LENGTH),&t,LENGTH,GENERAL_ROWS),true)}".into()
+        "conclude(&without_virtual_joints::<6,DOF,16>(&ARM,&general_arm(&LOOPS,&t,LENGTH),&t,LENGTH,GENERAL_ROWS),PRISMATIC,true)}".into()
     } else if given {
-        format!("conclude(&GIVEN.with::<6,{all},16>(&general_arm(&LOOPS,&t,LENGTH),value),true)}}")
+        format!("conclude(&GIVEN.with::<6,{all},16>(&general_arm(&LOOPS,&t,LENGTH),value),PRISMATIC,true)}}")
     } else {
-        "conclude(&general_arm(&LOOPS,&t,LENGTH),true)}".to_owned()
+        "conclude(&general_arm(&LOOPS,&t,LENGTH),PRISMATIC,true)}".to_owned()
     }) {
         return Ok((Construction::General, None));
     }
@@ -413,7 +413,7 @@ fn conclusion(
     } else {
         reader.expect("conclude(&found,")?;
     }
-    reader.expect(if by_angle { "true)}" } else { "false)}" })?;
+    reader.expect(if by_angle { "PRISMATIC,true)}" } else { "PRISMATIC,false)}" })?;
     Ok(construction)
 }
 

@@ -91,7 +91,7 @@ pub(super) fn types(names: &Names, found: &InverseKinematics, way: &str) -> Stri
         let means = means.unwrap_or_else(|| rust::what_is_invalid(found));
         text += &format!("#define {upper}_{} {number} /* {means} */\n", spelled(name));
     }
-    let branches = rust::branches(found);
+    let branches = found.branches();
     if !branches.is_empty() {
         let names = branches.iter().map(|name| format!("    \"{name}\"")).collect::<Vec<_>>().join(", \\\n");
         text += "\n";

@@ -152,23 +152,28 @@ fn faces(names: &Names, found: &InverseKinematics, inner: &str) -> String {
     let Names { robot, joints, .. } = names;
     let redundancy = if found.redundancy.is_some() { ", redundancy" } else { "" };
     let q = format!("{inner}_real_{joints}_type");
+    let (one, all) = (format!("{inner}_posture_{joints}_type"), format!("{inner}_postures_{joints}_{}_type", found.most));
     let text = include_str!("solver/faces.h.txt").replace("@invalid", "4");
-    let mut text = text.replace("@posture", &q).replace("@inner", inner).replace("@MACROS", &format!("{}_IK", names.upper));
+    let mut text = text
+        .replace("@postures", &all)
+        .replace("@posture", &q)
+        .replace("@inner", inner)
+        .replace("@MACROS", &format!("{}_IK", names.upper));
     text = text.replace("@most", &format!("{}_MAX_SOLUTIONS", names.upper)).replace("@robot", robot);
     for (about, signature) in functions(names, found) {
         let body = if signature.contains("_within_limits(") {
-            "    const INNER_solutions_type found = INNER_from_c(solutions);\n    const INNER_solutions_type kept = INNER_solutions_within_limits(&found);\n    INNER_to_c(&kept, within);\n".to_owned()
+            format!("    const {all} found = INNER_from_c(solutions);\n    const {all} kept = INNER_solutions_within_limits(&found);\n    INNER_to_c(&kept, within);\n")
         } else if signature.contains("_nearest_to(") {
             format!(
-                "    const INNER_solutions_type found = INNER_from_c(solutions);\n    const {q} posture = INNER_posture_of(q);\n    \
-                 const INNER_solution_type *nearest = INNER_solutions_nearest_to(&found, &posture);\n    \
+                "    const {all} found = INNER_from_c(solutions);\n    const {q} posture = INNER_posture_of(q);\n    \
+                 const {one} *nearest = INNER_solutions_nearest_to(&found, &posture);\n    \
                  return nearest == NULL ? -1 : (int32_t)(nearest - found.all.at);\n"
             )
         } else if signature.contains("_redundancy(") {
             format!("    const {q} posture = INNER_posture_of(q);\n    return INNER_inverse_kinematics_redundancy(&posture);\n")
         } else {
             format!(
-                "    INNER_real_4x4_type pose;\n    INNER_solutions_type found;\n    int i, j;\n    for (i = 0; i < 4; ++i) {{\n        \
+                "    INNER_real_4x4_type pose;\n    {all} found;\n    int i, j;\n    for (i = 0; i < 4; ++i) {{\n        \
                  for (j = 0; j < 4; ++j) {{\n            pose.at[i].at[j] = t[i][j];\n        }}\n    }}\n    \
                  found = INNER_inverse_kinematics(&pose{redundancy});\n    INNER_to_c(&found, solutions);\n"
             )

@@ -135,7 +135,7 @@ fn exported(found: &InverseKinematics) -> TokenStream {
     let redundancy = found.redundancy.as_ref().map(|_| quote!(inverse_kinematics_redundancy,));
     quote! {
         #[allow(unused_imports)]
-        pub use self::all_solutions::{inverse_kinematics, #redundancy Real, Solution, Solutions, Verdict, BRANCHES, DOF, MAX_SOLUTIONS};
+        pub use self::all_solutions::{inverse_kinematics, #redundancy Posture, Postures, Real, Solution, Solutions, Verdict, BRANCHES, DOF, MAX_SOLUTIONS};
     }
 }
 
@@ -209,7 +209,7 @@ fn constants(joints: &[Joint], scalar: Scalar, found: &InverseKinematics) -> Tok
             quote!([#low, #high])
         }
     });
-    let branches = branches(found);
+    let branches = found.branches();
     let count = usize_literal(branches.len());
     let meanings = meanings(found, "`LOOP`");
     let loops = match found.loops() {
@@ -284,28 +284,6 @@ pub(in crate::emit) fn meanings(found: &InverseKinematics, way: &str) -> Vec<Str
         lines.push(format!(" - {bits}, {}: {}.", choice.ways.join(", "), choice.meaning));
     }
     lines
-}
-
-/// The names of the branches by number.
-pub(in crate::emit) fn branches(found: &InverseKinematics) -> Vec<String> {
-    let Some(last) = found.choices.last() else { return Vec::new() };
-    let bits = |ways: usize| ways.next_power_of_two().trailing_zeros();
-    let all = 1usize << (last.bit + bits(last.ways.len()));
-    let name = |number: usize| {
-        let mut left = number;
-        let mut words = Vec::new();
-        for choice in &found.choices {
-            let mask = (choice.ways.len().next_power_of_two() - 1) << choice.bit;
-            left &= !mask;
-            words.push(choice.ways[(number & mask) >> choice.bit].as_str());
-        }
-        if left == 0 {
-            words.join(", ")
-        } else {
-            String::new()
-        }
-    };
-    (0..all).map(name).collect()
 }
 
 fn frame(f: &Frame, scalar: Scalar) -> TokenStream {
@@ -526,13 +504,13 @@ fn solutions(found: &InverseKinematics, dof: usize) -> TokenStream {
         },
         Construction::General(_) if found.given().is_some() => {
             let all = joints_with_given(6, dof);
-            quote!(conclude(&GIVEN.with::<6, #all, 16>(&general_arm(&LOOPS, &t, LENGTH), value), true))
+            quote!(conclude(&GIVEN.with::<6, #all, 16>(&general_arm(&LOOPS, &t, LENGTH), value), PRISMATIC, true))
         }
         Construction::General(_) if found.own.is_some() => quote! {
-            conclude(&without_virtual_joints::<6, DOF, 16>(&ARM, &general_arm(&LOOPS, &t, LENGTH), &t, LENGTH, GENERAL_ROWS), true)
+            conclude(&without_virtual_joints::<6, DOF, 16>(&ARM, &general_arm(&LOOPS, &t, LENGTH), &t, LENGTH, GENERAL_ROWS), PRISMATIC, true)
         },
         Construction::General(_) => quote! {
-            conclude(&general_arm(&LOOPS, &t, LENGTH), true)
+            conclude(&general_arm(&LOOPS, &t, LENGTH), PRISMATIC, true)
         },
     }
 }
@@ -581,20 +559,20 @@ fn conclusion(found: &InverseKinematics, dof: usize) -> TokenStream {
     // Solutions without branches come in the order of their joint variables.
     let by_angle = matches!(found.construction, Construction::TwoSlides(..));
     match (found.given(), &found.own) {
-        (None, None) => quote!(conclude(&found, #by_angle)),
+        (None, None) => quote!(conclude(&found, PRISMATIC, #by_angle)),
         (None, Some(_)) => {
             let (joints, most) = match &found.construction {
                 Construction::ParallelTurns(..) => (4, 4),
                 _ => (6, 8),
             };
             let (joints, most) = (usize_literal(joints), usize_literal(most));
-            quote!(conclude(&without_virtual_joints::<#joints, DOF, #most>(&ARM, &found, &t, LENGTH, ROUNDING), #by_angle))
+            quote!(conclude(&without_virtual_joints::<#joints, DOF, #most>(&ARM, &found, &t, LENGTH, ROUNDING), PRISMATIC, #by_angle))
         }
         (Some(_), _) => {
             let others = found.loops().first().map_or(0, |way| way.order.len());
             let all = joints_with_given(others, dof);
             let (others, most) = (usize_literal(others), usize_literal(if others == 6 { 8 } else { 4 }));
-            quote!(conclude(&GIVEN.with::<#others, #all, #most>(&found, value), #by_angle))
+            quote!(conclude(&GIVEN.with::<#others, #all, #most>(&found, value), PRISMATIC, #by_angle))
         }
     }
 }

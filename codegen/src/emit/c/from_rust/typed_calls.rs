@@ -49,6 +49,11 @@ impl<'a> Inference<'a, '_> {
                 Some(Type::Named(of, _)) => format!("{of}::{name}"),
                 _ => return Err("`Self` outside of a type".into()),
             },
+            // Functions belong to the type behind another name.
+            [of, name] => match self.program.aliases.get(of) {
+                Some(syn::Type::Path(behind)) => format!("{}::{name}", last(&behind.path)),
+                _ => format!("{of}::{name}"),
+            },
             _ => all.join("::"),
         };
         let written = path.path.segments.last().map(|segment| &segment.arguments);
