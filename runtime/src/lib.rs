@@ -35,4 +35,5 @@ pub mod simulation;
 #[cfg(feature = "std")]
 pub mod stability;
 pub mod task;
+pub mod timing;
 pub mod trajectory;

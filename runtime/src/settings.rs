@@ -33,6 +33,8 @@ pub enum Setting {
     PositionLimit,
     /// Limits of joint rates.
     RateLimit,
+    /// Limits of joint accelerations.
+    AccelerationLimit,
     /// Tolerance of the error of a task row.
     Tolerance,
     /// Limit of the integral.
@@ -60,6 +62,7 @@ impl core::fmt::Display for Setting {
             Setting::NullSpace => "the null-space gains",
             Setting::PositionLimit => "the position limits",
             Setting::RateLimit => "the rate limits",
+            Setting::AccelerationLimit => "the acceleration limits",
             Setting::Tolerance => "the tolerances",
             Setting::IntegralLimit => "the integral limits",
             Setting::TorqueLimit => "the torque limits",

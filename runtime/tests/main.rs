@@ -13,4 +13,5 @@ mod plant;
 mod random_starts;
 mod refusals;
 mod stability;
+mod timing;
 mod trajectory;

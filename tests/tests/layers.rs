@@ -74,6 +74,7 @@ const RUNTIME: Layers = &[
     ("manipulability", &["linalg", "robot", "task"]),
     ("trajectory", &["linalg", "orientation", "reference", "scalar"]),
     ("clik", &["linalg", "manipulability", "settings", "reference", "robot", "task"]),
+    ("timing", &["linalg", "reference", "robot", "scalar", "settings", "trajectory"]),
     ("control", &["linalg", "settings", "reference", "robot", "task"]),
     ("simulation", &["linalg", "reference", "robot"]),
     ("stability", &["control", "linalg", "reference", "robot", "simulation"]),

@@ -1,0 +1,47 @@
+//! Limits of a timing.
+
+use crate::settings::{positive_or_infinite, Setting, SettingError};
+use nalgebra::{RealField, SVector};
+
+/// Limits of the joints; an infinite one never acts.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Limits<T, const N: usize> {
+    pub(super) velocity: [T; N],
+    pub(super) acceleration: [T; N],
+    pub(super) effort: [[T; 2]; N],
+}
+
+impl<T: RealField + Copy, const N: usize> Limits<T, N> {
+    /// Limits of |dq|, rad/s or m/s; `VELOCITY_LIMITS` of an emitted robot.
+    ///
+    /// # Errors
+    /// Where a limit is not positive.
+    pub fn velocity(limits: [T; N]) -> Result<Self, SettingError> {
+        positive_or_infinite(Setting::RateLimit, &SVector::from(limits))?;
+        let infinite = T::one() / T::zero();
+        Ok(Self { velocity: limits, acceleration: [infinite; N], effort: [[-infinite, infinite]; N] })
+    }
+
+    /// And of |ddq|, rad/s² or m/s².
+    ///
+    /// # Errors
+    /// Where a limit is not positive.
+    pub fn with_acceleration(self, limits: [T; N]) -> Result<Self, SettingError> {
+        positive_or_infinite(Setting::AccelerationLimit, &SVector::from(limits))?;
+        Ok(Self { acceleration: limits, ..self })
+    }
+
+    /// And of the torque (force) at the joint, `lower <= tau <= upper`, N m or N; `EFFORT_LIMITS` of an emitted robot bound both sides.
+    ///
+    /// # Errors
+    /// Where the upper limit is not positive or the lower one not negative.
+    pub fn with_effort(self, lower: [T; N], upper: [T; N]) -> Result<Self, SettingError> {
+        positive_or_infinite(Setting::TorqueLimit, &SVector::from(upper))?;
+        positive_or_infinite(Setting::TorqueLimit, &-SVector::from(lower))?;
+        let mut effort = [[T::zero(); 2]; N];
+        for ((to, lower), upper) in effort.iter_mut().zip(lower).zip(upper) {
+            *to = [lower, upper];
+        }
+        Ok(Self { effort, ..self })
+    }
+}

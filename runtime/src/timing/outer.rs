@@ -1,0 +1,301 @@
+//! From above: x that no motion on the path exceeds.
+//!
+//! **Barrier.** Let X be a quadratic on a segment and one row with m > 0 and m U + c X + v sqrt(X) + d >= bound on all of it. A motion that
+//! keeps the row has m u <= m U wherever x = X, so it does not cross X upwards: x <= X at the left end implies x <= X on the segment
+//! (Walter, *Differential and Integral Inequalities*, 1970). The same with m < 0 from the right end. With m = 0, x <= X at every place.
+//! Nothing here assumes that an optimum has been found, is smooth or is unique.
+
+use super::law::Law;
+use super::limits::Limits;
+use super::model::JointFriction;
+use super::row::{Line, Row};
+use super::segment::{Barrier, Segment};
+use crate::linalg::lit;
+use nalgebra::RealField;
+
+/// Rounding of what follows the functions, of the limit.
+pub(super) const ROUNDING: f64 = 1e-11;
+
+/// In place of infinity, so that differences stay numbers.
+fn huge<T: RealField>() -> T {
+    lit(1e30)
+}
+
+/// A row at a node.
+#[derive(Clone, Copy)]
+struct AtNode<T> {
+    m: T,
+    c: T,
+    v: T,
+    rest: T,
+    m_error: T,
+}
+
+/// What a node allows.
+#[derive(Clone, Copy, Debug)]
+pub(super) enum NodeBound<T> {
+    /// x at most this.
+    AtMost(T),
+    /// No x, with the row that cannot be kept.
+    Nothing(usize),
+}
+
+/// The largest x at a node for which some u keeps all rows, with the functions of both segments there.
+pub(super) fn node_bound<T: RealField + Copy, const N: usize>(
+    left: Option<&Segment<T, N>>,
+    right: Option<&Segment<T, N>>,
+    limits: &Limits<T, N>,
+    friction: &[JointFriction<T>; N],
+) -> NodeBound<T> {
+    let mut x = huge::<T>();
+    let empty = AtNode { m: T::zero(), c: T::zero(), v: T::zero(), rest: huge(), m_error: T::zero() };
+    let mut rows = [[[empty; 4]; N]; 2];
+    let mut viscous = false;
+    for (side, (segment, end)) in [(left, 2), (right, 0)].into_iter().enumerate() {
+        let Some(segment) = segment else { continue };
+        for index in 0..Segment::<T, N>::ROWS {
+            let Some(row) = segment.row(index, limits, friction, true) else { continue };
+            let slack = row.bound.abs() * lit(ROUNDING);
+            if index >= Segment::<T, N>::SLOPED {
+                let c = row.c[end] - row.c_error;
+                if c > T::zero() {
+                    x = x.min((row.bound + slack) / c);
+                }
+                continue;
+            }
+            let at = AtNode {
+                m: row.m[end],
+                c: row.c[end] - row.c_error,
+                v: row.v[end],
+                rest: row.bound + slack + row.d_error - row.d[end],
+                m_error: row.m_error,
+            };
+            viscous |= at.v != T::zero();
+            rows[side][index / 4][index % 4] = at;
+        }
+    }
+    // A first solution tells how large u is, and so how much the errors of m count.
+    match largest(&rows, x, viscous) {
+        (NodeBound::AtMost(x), u) => {
+            for row in rows.iter_mut().flatten().flatten() {
+                row.rest += row.m_error * u * lit(2.0);
+            }
+            largest(&rows, x.max(T::zero()) * lit(1.0 + 1e-6), viscous).0
+        }
+        (NodeBound::Nothing(_), u) => {
+            for row in rows.iter_mut().flatten().flatten() {
+                row.rest += row.m_error * u * lit(2.0);
+            }
+            largest(&rows, x, viscous).0
+        }
+    }
+}
+
+/// Newton from the right on the width of the interval of u, and |u| there.
+fn largest<T: RealField + Copy, const N: usize>(rows: &[[[AtNode<T>; 4]; N]; 2], mut x: T, viscous: bool) -> (NodeBound<T>, T) {
+    // With viscous friction the width is bounded from above on [x (1 - share), x].
+    let mut share = T::one();
+    let mut size = T::zero();
+    for _ in 0..200 {
+        let low = if viscous { x * (T::one() - share) } else { T::zero() };
+        let (above, below) = (Line::tangent(x.max(lit(1e-30)).sqrt()), Line::chord(low, x));
+        let mut high: (T, T, usize) = (huge(), T::zero(), 0);
+        let mut least: (T, T, usize) = (-huge::<T>(), T::zero(), 0);
+        let mut flat: Option<(T, usize)> = None;
+        for side in rows {
+            for (index, row) in side.iter().flatten().enumerate() {
+                if row.rest >= huge() {
+                    continue;
+                }
+                let line = if row.v > T::zero() { below } else { above };
+                let (c, rest) = (row.c + row.v * line.slope, row.rest - row.v * line.height);
+                if row.m == T::zero() {
+                    // No u helps: c x <= rest.
+                    if c * x > rest {
+                        let at = if c > T::zero() { rest / c } else { -T::one() };
+                        if flat.is_none_or(|(most, _)| at < most) {
+                            flat = Some((at, index));
+                        }
+                    }
+                    continue;
+                }
+                let (u, slope) = ((rest - c * x) / row.m, -c / row.m);
+                if row.m > T::zero() {
+                    if u < high.0 {
+                        high = (u, slope, index);
+                    }
+                } else if u > least.0 {
+                    least = (u, slope, index);
+                }
+            }
+        }
+        size = if high.0 < huge() { high.0.abs() } else { T::zero() };
+        size = size.max(if least.0 > -huge::<T>() { least.0.abs() } else { T::zero() });
+        let width = high.0 - least.0;
+        let (mut next, mut culprit) = (x, high.2);
+        if let Some((at, index)) = flat {
+            (next, culprit) = (at, index);
+        } else if width < T::zero() {
+            let slope = high.1 - least.1;
+            // The row that gravity or friction breaks by itself is the one with the smaller share of m.
+            if least.1.abs() > high.1.abs() {
+                culprit = least.2;
+            }
+            next = if slope < T::zero() { x - width / slope } else { -T::one() };
+        }
+        if next >= x * (T::one() - T::default_epsilon() * lit(16.0)) {
+            return (NodeBound::AtMost(x), size);
+        }
+        if next < low {
+            if low <= T::zero() {
+                return (NodeBound::Nothing(culprit), size);
+            }
+            x = low;
+            continue;
+        }
+        if viscous {
+            share = share.min((T::one() - next / x) * lit(4.0));
+        }
+        x = next;
+    }
+    (NodeBound::AtMost(x), size)
+}
+
+/// A barrier of a row from `x0` at its left end with the least x at its right end, near the estimate `x2`.
+fn barrier<T: RealField + Copy>(row: &Row<T>, h: T, x0: T, estimate: T) -> Option<Law<T>> {
+    if !row.m.iter().all(|m| *m > row.m_error) {
+        return None;
+    }
+    let half = lit::<T>(0.5);
+    let mut law = Law { length: h, x0, k: T::zero(), x2: estimate.max(T::zero()) };
+    let slack = row.bound.abs() * lit(ROUNDING);
+    // How far the coefficients of the law may lie outside what the line over the root and the error assume.
+    let mut margin = lit::<T>(1e-2);
+    for _ in 0..8 {
+        let coefficients = [law.x0, law.middle(), law.x2];
+        let most = coefficients.iter().fold(T::zero(), |m, x| m.max(*x)) * (T::one() + margin);
+        let least = coefficients.iter().fold(most, |m, x| m.min(*x)).max(T::zero()) * (T::one() - margin);
+        let slope = law.acceleration().iter().fold(T::zero(), |m, u| m.max(u.abs())) * lit(1.1);
+        if !(most > T::zero()) {
+            return None;
+        }
+        let v = row.v_sign();
+        let line = if v > T::zero() { Line::chord(least, most) } else { Line::tangent(((least + most) * half).sqrt()) };
+        let target = row.bound + slack + row.m_error * slope + row.c_error * most + row.v_error * most.sqrt() + row.d_error;
+        let forms = if row.is_viscous() { row.with(&line).forms(h) } else { row.forms(h) };
+        let needs = forms.map(|form| target - form.rest - form.x0 * x0);
+        let [first, last] = [forms[0], forms[4]];
+        let determinant = first.x2 * last.k - first.k * last.x2;
+        if determinant == T::zero() {
+            return None;
+        }
+        law.k = (first.x2 * needs[4] - last.x2 * needs[0]) / determinant;
+        let mut x2 = -huge::<T>();
+        for (form, need) in forms.iter().zip(needs) {
+            if !(form.x2 > T::zero()) {
+                return None;
+            }
+            x2 = x2.max((need - form.k * law.k) / form.x2);
+        }
+        law.x2 = x2;
+        if !x2.is_finite() {
+            return None;
+        }
+        if x2 < T::zero() {
+            // Not even rest at the right end: without viscous friction this is exact; with it, x is bounded by a chord from zero.
+            return (!row.is_viscous()).then_some(law);
+        }
+        let holds = |x: T| x <= most && (x >= least || !row.is_viscous());
+        let kept = [law.x0, law.middle(), law.x2].iter().all(|x| holds(*x) && x.abs() <= most);
+        if kept && law.acceleration().iter().all(|u| u.abs() <= slope) && (!row.is_viscous() || law.middle() >= T::zero()) {
+            return Some(law);
+        }
+        margin = (margin * lit(2.0)).min(half);
+    }
+    None
+}
+
+/// The least barrier from `x0` at the left end, or seen from the other end if `back`.
+pub(super) fn least<T: RealField + Copy, const N: usize>(
+    segment: &Segment<T, N>,
+    limits: &Limits<T, N>,
+    friction: &[JointFriction<T>; N],
+    x0: T,
+    back: bool,
+) -> Option<Barrier<T>> {
+    let h = segment.length;
+    let seen = |index: usize| {
+        let row = segment.row(index, limits, friction, true)?;
+        let row = if back { row.reversed() } else { row };
+        row.m.iter().all(|m| *m > row.m_error).then_some(row)
+    };
+    // Rows in the order of what Euler and the trapezoidal rule say.
+    let estimate = |row: &Row<T>| {
+        let u = |end: usize, x: T| (row.bound - row.d[end] - row.c[end] * x - row.v[end] * x.max(T::zero()).sqrt()) / row.m[end];
+        let first = u(0, x0);
+        x0 + h * (first + u(2, x0 + first * h * lit(2.0)))
+    };
+    let mut best: Option<Barrier<T>> = None;
+    let mut after = (-huge::<T>(), 0);
+    for _ in 0..Segment::<T, N>::SLOPED {
+        let mut next: Option<(T, usize, Row<T>)> = None;
+        for index in 0..Segment::<T, N>::SLOPED {
+            let Some(row) = seen(index) else { continue };
+            let value = estimate(&row);
+            let later = value > after.0 || (value == after.0 && index > after.1);
+            if later && next.as_ref().is_none_or(|(least, ..)| value < *least) {
+                next = Some((value, index, row));
+            }
+        }
+        let Some((value, index, row)) = next else { break };
+        if best.is_some_and(|b| value > b.law.x2) {
+            break;
+        }
+        after = (value, index);
+        if let Some(law) = barrier(&row, h, x0, value) {
+            if best.is_none_or(|b| law.x2 < b.law.x2) {
+                best = Some(Barrier { law, row: index });
+            }
+        }
+    }
+    best
+}
+
+/// The bound of the speed that is least in the middle, at every place of the segment.
+pub(super) fn speed<T: RealField + Copy, const N: usize>(
+    segment: &Segment<T, N>,
+    limits: &Limits<T, N>,
+    friction: &[JointFriction<T>; N],
+) -> Option<Barrier<T>> {
+    let two = lit::<T>(2.0);
+    let mut best: Option<(T, usize, Row<T>)> = None;
+    for index in Segment::<T, N>::SLOPED..Segment::<T, N>::ROWS {
+        let Some(row) = segment.row(index, limits, friction, true) else { continue };
+        let middle = (row.c[0] + row.c[1] * two + row.c[2]) / row.bound;
+        if middle > T::zero() && best.as_ref().is_none_or(|(most, ..)| middle > *most) {
+            best = Some((middle, index, row));
+        }
+    }
+    let (_, index, row) = best?;
+    if !row.c.iter().all(|c| *c > row.c_error * two) {
+        return None;
+    }
+    let middle = (row.c[0] + row.c[1] * two + row.c[2]) * lit(0.25);
+    let (x0, x2) = (row.bound / row.c[0], row.bound / row.c[2]);
+    let mut law = Law { length: segment.length, x0, k: (row.bound / middle - (x0 + x2) * lit(0.5)) * two, x2 };
+    let most = x0.max(x2).max(law.middle()) * two;
+    let target = row.bound * (T::one() + lit(ROUNDING)) + row.c_error * most;
+    let mut scale = T::one();
+    for form in row.forms(segment.length) {
+        let value = form.x0 * law.x0 + form.x2 * law.x2 + form.k * law.k;
+        if !(value > T::zero()) {
+            return None;
+        }
+        scale = scale.max(target / value);
+    }
+    if !(scale < two) {
+        return None;
+    }
+    law = Law { x0: law.x0 * scale, k: law.k * scale, x2: law.x2 * scale, ..law };
+    Some(Barrier { law, row: index })
+}

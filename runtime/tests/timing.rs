@@ -1,0 +1,463 @@
+//! Time-optimal motion: exact optima, the gap on random paths, limits between nodes, places of faults.
+
+use crate::common::chain::{self, Chain, PANDA_LIMITS, SCARA_LIMITS, UR5_LIMITS};
+use armgen_runtime::timing::{
+    time_optimal, Ends, JointFriction, JointPath, Limits, Node, PathDynamics, PathError, PathFault, Piece, Segment, Timing,
+    TimingError, TimingFault, Workspace,
+};
+use armgen_runtime::trajectory::Progress;
+use nalgebra::{DMatrix, DVector, SVector};
+use std::time::Duration;
+
+/// Random numbers in [0, 1) (Knuth's linear congruences).
+fn random(seed: u64) -> impl FnMut() -> f64 {
+    let mut state = seed.wrapping_mul(0x9e37_79b9_7f4a_7c15) | 1;
+    move || {
+        state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        (state >> 11) as f64 / (1u64 << 53) as f64
+    }
+}
+
+/// The natural cubic spline through points, knots by chord length.
+fn spline<const N: usize>(points: &[SVector<f64, N>]) -> Vec<Piece<f64, N>> {
+    let n = points.len() - 1;
+    let h: Vec<f64> = points.windows(2).map(|p| (p[1] - p[0]).norm()).collect();
+    let mut system = DMatrix::zeros(n + 1, n + 1);
+    system[(0, 0)] = 1.0;
+    system[(n, n)] = 1.0;
+    for i in 1..n {
+        (system[(i, i - 1)], system[(i, i)], system[(i, i + 1)]) = (h[i - 1], 2.0 * (h[i - 1] + h[i]), h[i]);
+    }
+    let lu = system.lu();
+    let mut second = vec![SVector::<f64, N>::zeros(); n + 1];
+    for joint in 0..N {
+        let right = DVector::from_fn(n + 1, |i, _| match i {
+            0 => 0.0,
+            i if i == n => 0.0,
+            i => 6.0 * ((points[i + 1] - points[i])[joint] / h[i] - (points[i] - points[i - 1])[joint] / h[i - 1]),
+        });
+        let solution = lu.solve(&right).expect("a spline");
+        (0..=n).for_each(|i| second[i][joint] = solution[i]);
+    }
+    let mut start = 0.0;
+    (0..n)
+        .map(|i| {
+            let mut coefficients = [SVector::zeros(); 6];
+            coefficients[0] = points[i];
+            coefficients[1] = (points[i + 1] - points[i]) / h[i] - (second[i] * 2.0 + second[i + 1]) * (h[i] / 6.0);
+            coefficients[2] = second[i] / 2.0;
+            coefficients[3] = (second[i + 1] - second[i]) / (6.0 * h[i]);
+            let piece = Piece { start, length: h[i], coefficients };
+            start += h[i];
+            piece
+        })
+        .collect()
+}
+
+/// Three to seven points, anywhere within `range` of zero.
+fn random_path<const N: usize>(next: &mut impl FnMut() -> f64, range: [f64; N]) -> JointPath<f64, N, Vec<Piece<f64, N>>> {
+    let count = 3 + (next() * 5.0) as usize;
+    let points: Vec<SVector<f64, N>> = (0..count).map(|_| SVector::from_fn(|j, _| range[j] * (2.0 * next() - 1.0))).collect();
+    JointPath::new(spline(&points)).expect("a path")
+}
+
+fn with_timing<R: PathDynamics<N, Real = f64>, const N: usize, A>(
+    robot: &R,
+    path: &JointPath<f64, N, Vec<Piece<f64, N>>>,
+    limits: &Limits<f64, N>,
+    ends: Ends<f64>,
+    goal: f64,
+    segments: usize,
+    judge: impl FnOnce(Result<Timing<'_, f64, N>, TimingError>) -> A,
+) -> A {
+    let (mut nodes, mut segments) = (vec![Node::empty(); 2 * segments + 64], vec![Segment::empty(); segments + 1]);
+    let work = Workspace { nodes: &mut nodes, segments: &mut segments };
+    judge(time_optimal(robot, path, limits, ends, goal, work))
+}
+
+/// The largest share of a limit that dynamics written apart find at `places` places of each segment.
+fn worst<const N: usize>(
+    chain: &Chain<N>,
+    timing: &Timing<'_, f64, N>,
+    velocity: [f64; N],
+    acceleration: [f64; N],
+    effort: [f64; N],
+    places: usize,
+) -> f64 {
+    let mut worst = 0.0f64;
+    for i in 0..timing.segments() {
+        let p = timing.profile(i).expect("a segment");
+        let middle = 0.5 * (p.x[0] + p.x[1]) + p.k;
+        for place in 0..=places {
+            let t = place as f64 / places as f64;
+            // Inside: at the ends the sign of a rate may be that of the neighbour.
+            let t = 1e-12 + (1.0 - 2e-12) * t;
+            let x = p.x[0] * (1.0 - t) * (1.0 - t) + 2.0 * middle * t * (1.0 - t) + p.x[1] * t * t;
+            let u = ((middle - p.x[0]) * (1.0 - t) + (p.x[1] - middle) * t) / p.length;
+            assert!(x >= 0.0, "x = {x} at {t} of segment {i}");
+            let at = timing.reference(&Progress { s: p.start + t * p.length, ds: x.sqrt(), dds: u });
+            let tau = chain.torque_with_friction(&at.q, &at.dq, &at.ddq);
+            for j in 0..N {
+                worst =
+                    worst.max(at.dq[j].abs() / velocity[j]).max(at.ddq[j].abs() / acceleration[j]).max(tau[j].abs() / effort[j]);
+            }
+        }
+    }
+    worst
+}
+
+const FREE: f64 = f64::INFINITY;
+
+fn table<const N: usize>(
+    name: &str,
+    chain: &Chain<N>,
+    (velocity, effort): ([f64; N], [f64; N]),
+    acceleration: [f64; N],
+    range: [f64; N],
+    paths: u64,
+) {
+    let limits = Limits::velocity(velocity)
+        .unwrap()
+        .with_acceleration(acceleration)
+        .unwrap()
+        .with_effort(effort.map(|x| -x), effort)
+        .unwrap();
+    let (mut gaps, mut shares, mut counts) = (Vec::new(), 0.0f64, Vec::new());
+    for seed in 0..paths {
+        let path = random_path(&mut random(seed + 1), range);
+        with_timing(chain, &path, &limits, Ends { hold: false, ..Ends::at_rest() }, 1e-3, 1000, |timing| {
+            let timing = timing.unwrap_or_else(|error| panic!("{name}, path {seed}: {error}"));
+            gaps.push(timing.gap());
+            counts.push(timing.segments());
+            let share = worst(chain, &timing, velocity, acceleration, effort, 28);
+            assert!(share <= 1.0 + 1e-9, "{name}, path {seed}: {share}");
+            shares = shares.max(share);
+            assert!(timing.gap() >= 0.0, "{name}, path {seed}: {}", timing.gap());
+        });
+    }
+    gaps.sort_by(f64::total_cmp);
+    counts.sort_unstable();
+    let (median, largest) = (gaps[gaps.len() / 2], gaps[gaps.len() - 1]);
+    println!(
+        "{name}: gap median {median:.2e}, largest {largest:.2e}; segments {}; share 1 - {:.1e}",
+        counts[counts.len() / 2],
+        1.0 - shares
+    );
+    assert!(largest <= 1e-3, "{name}: {largest}");
+}
+
+#[test]
+fn few_random_paths_are_timed_to_a_thousandth() {
+    table("scara", &chain::scara(), SCARA_LIMITS, [FREE; 4], [2.5, 2.5, 0.3, 3.0], 2);
+    table("ur5", &chain::ur5().without_friction(), UR5_LIMITS, [FREE; 6], [3.0; 6], 1);
+    table("ur5, friction", &chain::ur5(), UR5_LIMITS, [FREE; 6], [3.0; 6], 1);
+}
+
+#[test]
+#[ignore = "wide"]
+fn random_paths_are_timed_to_a_thousandth() {
+    let of_panda = [2.5, 1.7, 2.5, 1.5, 2.5, 1.8, 2.5];
+    table("scara", &chain::scara(), SCARA_LIMITS, [FREE; 4], [2.5, 2.5, 0.3, 3.0], 100);
+    table("scara, acceleration", &chain::scara(), SCARA_LIMITS, [8.0, 10.0, 4.0, 30.0], [2.5, 2.5, 0.3, 3.0], 100);
+    table("ur5", &chain::ur5().without_friction(), UR5_LIMITS, [FREE; 6], [3.0; 6], 100);
+    table("ur5, friction", &chain::ur5(), UR5_LIMITS, [FREE; 6], [3.0; 6], 100);
+    table("ur5, friction, acceleration", &chain::ur5(), UR5_LIMITS, [10.0; 6], [3.0; 6], 100);
+    table("panda", &chain::panda().without_friction(), PANDA_LIMITS, [FREE; 7], of_panda, 100);
+    table("panda, friction", &chain::panda(), PANDA_LIMITS, [FREE; 7], of_panda, 100);
+    table(
+        "panda, acceleration",
+        &chain::panda().without_friction(),
+        PANDA_LIMITS,
+        [15.0, 7.5, 10.0, 12.5, 15.0, 20.0, 20.0],
+        of_panda,
+        100,
+    );
+}
+
+/// An arm of one joint, and the path from 0 to `length` in one piece.
+fn one_joint(slides: bool, friction: [f64; 2], gravity: [f64; 3], mass: f64) -> Chain<1> {
+    let friction = JointFriction { viscous: friction[0], coulomb: friction[1], ..JointFriction::default() };
+    let a = if slides { 0.0 } else { 1.0 };
+    let row = chain::Row {
+        slides,
+        a,
+        alpha: 0.0,
+        d: 0.0,
+        theta: 0.0,
+        mass,
+        com: [0.0; 3],
+        inertia: [0.0; 6],
+        rotor: [0.0; 2],
+        friction,
+    };
+    Chain::new([row], gravity)
+}
+
+fn line<const N: usize>(length: f64, from: [f64; N], to: [f64; N]) -> JointPath<f64, N, Vec<Piece<f64, N>>> {
+    JointPath::new(vec![Piece::line(0.0, length, from, to)]).expect("a line")
+}
+
+fn inside<const N: usize>(
+    name: &str,
+    robot: &Chain<N>,
+    path: &JointPath<f64, N, Vec<Piece<f64, N>>>,
+    limits: [[f64; N]; 2],
+    exact: f64,
+) {
+    let [velocity, effort] = limits;
+    let limits = Limits::velocity(velocity).unwrap().with_effort(effort.map(|x| -x), effort).unwrap();
+    with_timing(robot, path, &limits, Ends { hold: false, ..Ends::at_rest() }, 1e-4, 700, |timing| {
+        let timing = timing.unwrap_or_else(|error| panic!("{name}: {error}"));
+        println!("{name}: {:.9} <= {exact:.9} <= {:.9}, {} segments", timing.lower_bound(), timing.seconds(), timing.segments());
+        assert!(timing.lower_bound() <= exact * (1.0 + 1e-12) && exact <= timing.seconds() * (1.0 + 1e-12), "{name}");
+        assert!(timing.gap() < 1e-3, "{name}: {}", timing.gap());
+        let share = worst(robot, &timing, velocity, [FREE; N], effort, 50);
+        assert!(share <= 1.0 + 1e-9, "{name}: {share}");
+    });
+}
+
+#[test]
+fn a_slide_with_friction_has_the_time_of_its_closed_form() {
+    let (mass, viscous, coulomb, force, way) = (2.0, 1.5, 2.0, 10.0, 0.5);
+    // m dv = F - F_c - F_v v, then m dv = -F - F_c - F_v v: exponentials, and the time of the switch by bisection.
+    let (rate, top, low) = (viscous / mass, (force - coulomb) / viscous, (force + coulomb) / viscous);
+    let after = |t: f64| {
+        let v = top * -f64::exp_m1(-rate * t);
+        let s = top * t - v / rate;
+        let stop = f64::ln_1p(v / low) / rate;
+        (s + (v + low) * -f64::exp_m1(-rate * stop) / rate - low * stop, t + stop)
+    };
+    let (mut left, mut right) = (0.0, 10.0);
+    for _ in 0..200 {
+        let middle = 0.5 * (left + right);
+        if after(middle).0 < way {
+            left = middle
+        } else {
+            right = middle
+        }
+    }
+    let slide = one_joint(true, [viscous, coulomb], [0.0; 3], mass);
+    inside("slide", &slide, &line(1.0, [0.0], [way]), [[3.0], [force]], after(left).1);
+    // The same path backwards, and with s in other units.
+    for unit in [1e-6, 1e6] {
+        inside("slide in other units", &slide, &line(unit, [way], [0.0]), [[3.0], [force]], after(left).1);
+    }
+}
+
+#[test]
+fn a_pendulum_has_the_time_of_its_energy() {
+    let (gravity, way) = (9.81, 2.0f64);
+    let pendulum = one_joint(false, [0.0; 2], [gravity, 0.0, 0.0], 1.0);
+    for torque in [15.0, 8.0] {
+        // w²/2 is the work of torque and gravity from either end; with t = v² at each end the integrands are smooth (Simpson).
+        let half = 0.5 * way + gravity * (1.0 - way.cos()) / (2.0 * torque);
+        let simpson = |f: &dyn Fn(f64) -> f64, to: f64| {
+            let n = 20_000;
+            let h = to / n as f64;
+            (0..=n)
+                .map(|i| {
+                    f((i as f64 * h).max(1e-9))
+                        * if i == 0 || i == n {
+                            1.0
+                        } else if i % 2 == 1 {
+                            4.0
+                        } else {
+                            2.0
+                        }
+                })
+                .sum::<f64>()
+                * h
+                / 3.0
+        };
+        let rise = |v: f64| 2.0 * v / (2.0 * (torque * v * v - gravity * (1.0 - (v * v).cos()))).sqrt();
+        let fall = |v: f64| 2.0 * v / (2.0 * (torque * v * v + gravity * ((way - v * v).cos() - way.cos()))).sqrt();
+        let exact = simpson(&rise, half.sqrt()) + simpson(&fall, (way - half).sqrt());
+        inside("pendulum", &pendulum, &line(1.0, [0.0], [way]), [[20.0], [torque]], exact);
+    }
+}
+
+#[test]
+fn inertia_alone_has_the_time_of_a_trapezoid() {
+    let link = chain::Row { slides: false, a: 1.0, mass: 1.0, ..one_row() };
+    let arm = Chain::new([link, link], [0.0, 0.0, -9.81]);
+    let path = |way: f64| line(1.0, [0.0, 0.5 * std::f64::consts::PI], [way, 0.5 * std::f64::consts::PI]);
+    // B_11 = 3 kg m² with the elbow at a right angle; a = 20/3.
+    inside("triangle", &arm, &path(1.0), [[100.0; 2], [20.0, 100.0]], 2.0 * (3.0f64 / 20.0).sqrt());
+    inside("trapezoid", &arm, &path(2.0), [[1.0, 100.0], [20.0, 100.0]], 2.15);
+}
+
+fn one_row() -> chain::Row {
+    let friction = JointFriction::default();
+    chain::Row {
+        slides: false,
+        a: 0.0,
+        alpha: 0.0,
+        d: 0.0,
+        theta: 0.0,
+        mass: 1.0,
+        com: [0.0; 3],
+        inertia: [0.0; 6],
+        rotor: [0.0; 2],
+        friction,
+    }
+}
+
+#[test]
+fn every_fault_has_its_place() {
+    let pieces = |all: &[[f64; 3]]| {
+        let mut start = 0.0;
+        let pieces = all.iter().map(|[from, to, other]| {
+            let piece = Piece::line(start, 1.0, [*from, 0.0], [*to, *other]);
+            start += 1.0;
+            piece
+        });
+        JointPath::new(pieces.collect::<Vec<_>>()).map(|_| ())
+    };
+    let fault = |s: f64, piece: usize, fault: PathFault| Err(PathError { s, piece, fault });
+    assert_eq!(JointPath::<f64, 2, Vec<Piece<f64, 2>>>::new(vec![]).unwrap_err().fault, PathFault::Empty);
+    assert_eq!(pieces(&[[0.0, f64::NAN, 0.0]]).unwrap_err().fault, PathFault::NotFinite);
+    assert_eq!(pieces(&[[0.0, 1.0, 0.0], [1.0, 1.0, 0.0]]), fault(1.0, 1, PathFault::ZeroLength));
+    assert!(
+        matches!(pieces(&[[0.0, 1.0, 0.0], [1.1, 2.0, 0.0]]).unwrap_err().fault, PathFault::Jump { joint: 0, by } if (by - 0.1).abs() < 1e-12)
+    );
+    assert!(
+        matches!(pieces(&[[0.0, 1.0, 0.0], [1.0, 1.0, 1.0]]).unwrap_err().fault, PathFault::Corner { angle } if (angle - 1.570_796).abs() < 1e-5)
+    );
+    assert_eq!(pieces(&[[0.0, 1.0, 0.0], [1.0, 3.0, 0.0]]), fault(1.0, 1, PathFault::Scale));
+    // q = (s - 1/2)²: the joint stops half-way and turns back.
+    let mut cusp = Piece::line(0.0, 1.0, [0.25, 0.0], [0.25, 0.0]);
+    (cusp.coefficients[1][0], cusp.coefficients[2][0]) = (-1.0, 1.0);
+    let error = JointPath::new(vec![cusp]).map(|_| ()).unwrap_err();
+    assert!(error.fault == PathFault::TurningBack && (error.s - 0.5).abs() < 1e-9, "{error}");
+
+    let pendulum = one_joint(false, [0.0; 2], [9.81, 0.0, 0.0], 1.0);
+    let timed = |from: f64, to: f64, torque: f64, ends: Ends<f64>| {
+        let limits = Limits::velocity([20.0]).unwrap().with_effort([-torque], [torque]).unwrap();
+        with_timing(&pendulum, &line(1.0, [from], [to]), &limits, ends, 1e-3, 400, |timing| timing.map(|t| t.seconds()))
+    };
+    let error = timed(0.0, 2.0, 8.0, Ends::at_rest()).unwrap_err();
+    assert!(
+        matches!(error.fault, TimingFault::EndNotHeld { joint: 0, torque, limit } if (torque - 9.81 * 2f64.sin()).abs() < 1e-12 && limit == 8.0)
+    );
+    assert_eq!(error.s, 1.0);
+    // The work of 6 N m is that of gravity at 6 q = 9.81 (1 - cos q), q = 1.438 of 3: there the arm is at rest again.
+    for (from, to, torque, [low, high]) in [(0.0, 3.0, 6.0, [0.46, 0.50]), (1.2, 2.9, 8.0, [0.0, 0.02])] {
+        let error = timed(from, to, torque, Ends { hold: false, ..Ends::at_rest() }).unwrap_err();
+        assert!(matches!(error.fault, TimingFault::InfeasibleSpeed { joint: 0, .. }), "{error}");
+        assert!(low <= error.s && error.s <= high, "{error}");
+    }
+    let fast = timed(0.0, 1.0, 15.0, Ends { speed: [21.0, 0.0], hold: false }).unwrap_err();
+    assert!(matches!(fast.fault, TimingFault::InfeasibleSpeed { proved: true, .. }), "{fast}");
+    let limits = Limits::velocity([FREE]).unwrap();
+    let error =
+        with_timing(&pendulum, &line(1.0, [0.0], [1.0]), &limits, Ends::at_rest(), 1e-3, 400, |timing| timing.map(|_| ()))
+            .unwrap_err();
+    assert_eq!(error.fault, TimingFault::MissingLimit { joint: 0 });
+    let limits = Limits::velocity([1.0]).unwrap();
+    let error = with_timing(&pendulum, &line(1.0, [0.0], [9.0]), &limits, Ends::at_rest(), 1e-3, 8, |timing| timing.map(|_| ()))
+        .unwrap_err();
+    assert!(matches!(error.fault, TimingFault::TooCoarse { segments } if segments > 8), "{error}");
+    assert!(Limits::velocity([0.0]).is_err() && Limits::velocity([1.0]).unwrap().with_effort([0.0], [1.0]).is_err());
+}
+
+/// Torques along paths lie in their enclosures; the largest |f - quadratic|/error.
+fn enclosures<const N: usize>(
+    chain: &Chain<N>,
+    limits: &Limits<f64, N>,
+    path: &JointPath<f64, N, Vec<Piece<f64, N>>>,
+    places: usize,
+    next: &mut impl FnMut() -> f64,
+) -> f64 {
+    with_timing(chain, path, limits, Ends { hold: false, ..Ends::at_rest() }, 1e-2, 3000, |timing| {
+        let Ok(timing) = timing else { return 0.0 };
+        let mut worst = 0.0f64;
+        for _ in 0..places {
+            let (i, t) = ((next() * timing.segments() as f64) as usize, next());
+            let p = timing.profile(i).expect("a segment");
+            let of = timing.reference(&Progress { s: p.start + t * p.length, ds: 1.0, dds: 0.0 });
+            let exact = chain.path_dynamics(&of.q, &of.dq, &of.ddq);
+            let [value, error] = timing.enclosure(i, t).expect("a segment");
+            for (exact, value, error) in [
+                (exact.inertial, value.inertial, error.inertial),
+                (exact.velocity, value.velocity, error.velocity),
+                (exact.gravity, value.gravity, error.gravity),
+            ] {
+                for j in 0..N {
+                    let away = (exact[j] - value[j]).abs();
+                    assert!(away <= error[j], "joint {j}: {away:e} of {:e}", error[j]);
+                    if error[j] > 0.0 {
+                        worst = worst.max(away / error[j]);
+                    }
+                }
+            }
+        }
+        worst
+    })
+}
+
+fn random_arms(arms: u64, places: usize, dense: usize) {
+    let (mut worst_share, mut worst_limit, mut timed) = (0.0f64, 0.0f64, 0);
+    for seed in 0..arms {
+        let mut next = random(1000 + seed);
+        let chain: Chain<4> = chain::random(&mut next);
+        let velocity = std::array::from_fn(|_| 1.0 + 3.0 * next());
+        let effort = std::array::from_fn(|i| (30.0 + 200.0 * next()) / (1.0 + i as f64) + 20.0);
+        let limits = Limits::velocity(velocity).unwrap().with_effort(effort.map(|x: f64| -x), effort).unwrap();
+        let path = random_path(&mut next, [2.0, 2.0, 2.0, 2.0]);
+        worst_share = worst_share.max(enclosures(&chain, &limits, &path, places, &mut next));
+        with_timing(&chain, &path, &limits, Ends { hold: false, ..Ends::at_rest() }, 1e-3, 1500, |timing| match timing {
+            Ok(timing) => {
+                timed += 1;
+                let share = worst(&chain, &timing, velocity, [FREE; 4], effort, dense);
+                assert!(share <= 1.0 + 1e-9, "arm {seed}: {share}");
+                assert!(timing.gap() >= 0.0 && timing.gap() < 5e-3, "arm {seed}: gap {}", timing.gap());
+                worst_limit = worst_limit.max(share);
+            }
+            // A slide of a random arm may be too weak for its load.
+            Err(error) => assert!(
+                matches!(error.fault, TimingFault::InfeasiblePoint { .. } | TimingFault::InfeasibleSpeed { .. }),
+                "arm {seed}: {error}"
+            ),
+        });
+    }
+    println!(
+        "{timed} of {arms} arms timed; |f - quadratic|/error at most {worst_share:.2}, limits at most 1 - {:.1e}",
+        1.0 - worst_limit
+    );
+    assert!(timed * 2 > arms, "{timed}");
+    assert!(worst_share > 0.3, "the bound is far too large: {worst_share}");
+}
+
+#[test]
+fn random_arms_keep_their_enclosures_and_limits() {
+    random_arms(4, 2000, 20);
+}
+
+#[test]
+#[ignore = "wide"]
+fn many_random_arms_keep_their_enclosures_and_limits() {
+    random_arms(100, 10_000, 100);
+}
+
+#[test]
+fn samples_follow_the_law_and_end_at_the_end() {
+    let chain = chain::scara();
+    let path = random_path(&mut random(5), [2.0, 2.0, 0.3, 3.0]);
+    let limits = Limits::velocity(SCARA_LIMITS.0).unwrap().with_effort(SCARA_LIMITS.1.map(|x| -x), SCARA_LIMITS.1).unwrap();
+    with_timing(&chain, &path, &limits, Ends::at_rest(), 1e-3, 1000, |timing| {
+        let timing = timing.expect("a timing");
+        let end = timing.duration();
+        assert!((end.as_secs_f64() - timing.seconds()).abs() < 3e-9 && end.as_secs_f64() >= timing.seconds());
+        let (first, last) = (path.pieces()[0], path.pieces()[path.pieces().len() - 1]);
+        assert_eq!(timing.sample(Duration::ZERO).q, first.at(first.start).q);
+        assert!((timing.sample(end).q - last.at(last.end()).q).amax() < 1e-12 && timing.sample(end).dq.amax() == 0.0);
+        assert_eq!(timing.sample(end + Duration::from_secs(3)).dq.amax(), 0.0);
+        let step = Duration::from_micros(10);
+        for i in 1..200u32 {
+            let t = end * i / 200;
+            let [before, at, after] = [t - step, t, t + step].map(|t| timing.sample(t));
+            let h = step.as_secs_f64();
+            assert!(((after.q - before.q) / (2.0 * h) - at.dq).amax() < 2e-3, "at {t:?}");
+        }
+    });
+}
