@@ -7,11 +7,13 @@
 //! after repeated halving of the angle.
 
 use std::cmp::Ordering;
+use std::collections::BTreeMap;
+use std::sync::{Mutex, PoisonError};
 
 use dashu_base::{Abs, BitTest, Signed, SquareRoot, UnsignedAbs};
 use dashu_int::{IBig, UBig};
 
-use crate::formula::{Formula, Rational, Root};
+use crate::formula::{definitions, Formula, Rational, Root};
 use crate::interval::{ceil_shift, floor_div, floor_shift, invert, multiply, Interval};
 
 /// Precisions, tried in this order, bits.
@@ -41,6 +43,40 @@ pub fn sine_cosine_of(angle: &Rational, fine: usize) -> Option<(IBig, IBig, usiz
     Some((series(&angle, 1, bits)?.low, series(&angle, 0, bits)?.low, bits))
 }
 
+/// Enclosures of pi and of angles, sines and cosines, by formula and number of bits. An arm has few angles, and thousands of constants made of
+/// them; a series is the whole cost of such a constant.
+static SERIES: Mutex<BTreeMap<(usize, Formula), Option<Interval>>> = Mutex::new(BTreeMap::new());
+
+/// Entries that are kept before all are dropped; those of hundreds of arms.
+const KEPT: usize = 1 << 13;
+
+/// The value of a series, computed once. A name means another formula in another text, so that a formula with names is not kept.
+fn once(formula: &Formula, bits: usize, compute: impl FnOnce() -> Option<Interval>) -> Option<Interval> {
+    if definitions::has_names(formula) {
+        return compute();
+    }
+    let key = (bits, formula.clone());
+    let kept = || SERIES.lock().unwrap_or_else(PoisonError::into_inner);
+    if let Some(known) = kept().get(&key) {
+        return known.clone();
+    }
+    let value = compute();
+    let mut kept = kept();
+    if kept.len() >= KEPT {
+        kept.clear();
+    }
+    kept.insert(key, value.clone());
+    value
+}
+
+/// pi = 4 atan(1/2) + 4 atan(1/3).
+fn pi(bits: usize) -> Option<Interval> {
+    once(&Formula::Pi, bits, || {
+        let (half, third) = (arctangent(2, bits), arctangent(3, bits));
+        Some(Interval { low: (half.low + third.low) * IBig::from(4), high: (half.high + third.high) * IBig::from(4) })
+    })
+}
+
 fn interval(formula: &Formula, bits: usize) -> Option<Interval> {
     let exact = |n: IBig| Interval { low: n.clone(), high: n };
     Some(match formula {
@@ -48,10 +84,7 @@ fn interval(formula: &Formula, bits: usize) -> Option<Interval> {
             let (n, d) = (value.numerator().clone() << bits, IBig::from(value.denominator().clone()));
             Interval { low: floor_div(&n, &d), high: -floor_div(&-n, &d) }
         }
-        Formula::Pi => {
-            let (half, third) = (arctangent(2, bits), arctangent(3, bits));
-            Interval { low: (half.low + third.low) * IBig::from(4), high: (half.high + third.high) * IBig::from(4) }
-        }
+        Formula::Pi => pi(bits)?,
         Formula::Root(Root::Integer(n)) => {
             let floor = IBig::from((n << (2 * bits)).sqrt());
             Interval { high: &floor + IBig::ONE, low: floor }
@@ -64,12 +97,12 @@ fn interval(formula: &Formula, bits: usize) -> Option<Interval> {
             let root = |n: &IBig| IBig::from((n.clone().unsigned_abs() << bits).sqrt());
             Interval { low: root(&inner.low), high: root(&inner.high) + IBig::ONE }
         }
-        Formula::Sine(angle) => series(&interval(angle, bits)?, 1, bits)?,
-        Formula::Cosine(angle) => series(&interval(angle, bits)?, 0, bits)?,
-        Formula::Arctangent(tangent) => {
+        Formula::Sine(angle) => once(formula, bits, || series(&interval(angle, bits)?, 1, bits))?,
+        Formula::Cosine(angle) => once(formula, bits, || series(&interval(angle, bits)?, 0, bits))?,
+        Formula::Arctangent(tangent) => once(formula, bits, || {
             let (n, d) = (tangent.numerator().clone() << bits, IBig::from(tangent.denominator().clone()));
-            arctangent_of(Interval { low: floor_div(&n, &d), high: -floor_div(&-n, &d) }, bits)?
-        }
+            arctangent_of(Interval { low: floor_div(&n, &d), high: -floor_div(&-n, &d) }, bits)
+        })?,
         Formula::Defined(definition) => definition.enclosure(bits, |formula| interval(formula, bits))?,
         Formula::Sum(terms) => {
             let mut sum = exact(IBig::ZERO);
@@ -152,9 +185,8 @@ fn less_turns(angle: &Interval, bits: usize) -> Option<Interval> {
     if extra > LONGEST_ANGLE {
         return None;
     }
-    let (half, third) = (arctangent(2, bits + extra), arctangent(3, bits + extra));
-    let eight = IBig::from(8);
-    let turn = Interval { low: (half.low + third.low) * &eight, high: (half.high + third.high) * eight };
+    let half = pi(bits + extra)?;
+    let turn = Interval { low: half.low * IBig::from(2), high: half.high * IBig::from(2) };
     let turns = floor_div(&(angle.low.clone() << extra), &turn.low);
     let (least, most) = if turns.is_negative() { (&turn.low, &turn.high) } else { (&turn.high, &turn.low) };
     Some(Interval {
@@ -394,6 +426,30 @@ mod tests {
         }
         assert_eq!(Float::F64.between(0.1, 0.7), (0.1, 0.7));
         assert_eq!(Float::F32.between(0.1, 0.7), (f64::from(0.1f32), f64::from(0.7f32)));
+    }
+
+    /// A name has another meaning in each list of definitions; an angle by its name must not take the value of another list.
+    #[test]
+    fn values_are_kept_by_meaning() {
+        let texts = ["7/10", "-pi/5 + 3/10"];
+        for _ in 0..2 {
+            for text in texts {
+                let mut definitions = definitions::Definitions::default();
+                definitions.define(0, text).expect("a definition");
+                for function in ["sin", "cos"] {
+                    let by_name = Formula::parse_with(&format!("{function}(k0)"), &definitions).expect("a formula");
+                    let plain = parse(&format!("{function}({text})"));
+                    for bits in [128, 256] {
+                        assert_eq!(enclose(&by_name, bits), enclose(&plain, bits), "{function}({text})");
+                    }
+                }
+            }
+        }
+        let width = |bits: usize| {
+            let (low, high) = enclose(&parse("cos(7/10)*pi + atan(1/3)"), bits).expect("a number");
+            high - low
+        };
+        assert!(width(256) < width(128), "more bits are not those of an earlier enclosure");
     }
 
     #[test]

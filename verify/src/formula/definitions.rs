@@ -217,6 +217,18 @@ fn references(formula: &Formula, found: &mut BTreeMap<usize, Arc<Definition>>) {
     }
 }
 
+/// Whether a formula uses definitions.
+pub(crate) fn has_names(formula: &Formula) -> bool {
+    match formula {
+        Formula::Rational(_) | Formula::Pi | Formula::Arctangent(_) | Formula::Root(Root::Integer(_)) => false,
+        Formula::Root(Root::Nested(inner)) | Formula::Sine(inner) | Formula::Cosine(inner) | Formula::Power(inner, _) => {
+            has_names(inner)
+        }
+        Formula::Sum(parts) | Formula::Product(parts) => parts.iter().any(has_names),
+        Formula::Defined(_) => true,
+    }
+}
+
 fn references_of(formula: &Formula) -> Vec<Arc<Definition>> {
     let mut found = BTreeMap::new();
     references(formula, &mut found);
