@@ -148,6 +148,27 @@ fn what_a_language_lacks_is_refused_with_a_way_out() {
     assert_eq!(fs::read_dir(&folder).expect("the folder").count(), 0, "nothing is written where something fails");
 }
 
+/// A module of some functions is verified; its head names the options, which the command that makes it again repeats.
+#[test]
+fn a_module_of_some_functions_is_verified() {
+    let folder = folder("some");
+    let chosen = ["--scalar", "f32", "--functions", "gravity,inertia_matrix_with"];
+    for (language, out) in [("rust", "a.rs"), ("c", "a.h"), ("python", "a.py")] {
+        let description = scara();
+        let all = [&["generate", &description, "--language", language, "--out", out, "--verify"][..], &chosen].concat();
+        check(&folder, &all, 0);
+        let text = fs::read_to_string(folder.join(out)).expect("the module");
+        assert!(text.contains("Options: --scalar f32 --functions gravity,inertia_matrix_with\n"), "{out}");
+        check(&folder, &["verify", &scara(), out], 0);
+        let edited = text.replacen("gravity,", "gravity,momentum,", 1).replacen("0.25", "0.125", 1);
+        fs::write(folder.join(out), edited).expect("written");
+        let said = check(&folder, &["verify", &scara(), out], 1);
+        let option = if language == "rust" { String::new() } else { format!(" --language {language}") };
+        let again = format!("{option} --scalar f32 --functions gravity,momentum,inertia_matrix_with --out {out} --verify");
+        assert!(said.contains(&again), "{said}");
+    }
+}
+
 /// Words of another language are names like others.
 #[test]
 fn a_word_of_one_language_is_a_name_in_another() {

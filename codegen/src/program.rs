@@ -14,7 +14,9 @@ use std::collections::BTreeMap;
 use crate::catalogue::{Absent, Argument, Parameter, Quantity, Sizes};
 use crate::exact::Number;
 use crate::kinds::Scalar;
+use crate::pass::Passes;
 use crate::ring::Symbol;
+use crate::schedule::Selection;
 use armgen_description::language::Language;
 
 /// Where the sines and cosines of the emitted module come from.
@@ -37,6 +39,15 @@ impl Trig {
         match language {
             Language::Rust => Trig::Libm,
             Language::C | Language::JavaScript | Language::Python | Language::Matlab => Trig::Fast,
+        }
+    }
+
+    /// The word of the option.
+    pub fn name(self) -> &'static str {
+        match self {
+            Trig::Libm => "libm",
+            Trig::Std => "std",
+            Trig::Fast => "fast",
         }
     }
 }
@@ -200,6 +211,10 @@ pub struct Module {
     pub turn: Option<Number>,
     /// How many states the functions for many states take at a time; none: there are no such functions.
     pub batch: Option<usize>,
+    /// The functions that were asked for.
+    pub selection: Selection,
+    /// Passes that were not used.
+    pub without: Passes,
 }
 
 impl Module {

@@ -77,6 +77,8 @@ pub fn module(model: &Model, options: &Options) -> Module {
         trig: options.trig,
         turn: model.field.turn().map(|turn| turn.angle.clone()),
         batch: options.batch.filter(|&lanes| lanes > 0),
+        selection: options.functions.clone(),
+        without: options.without,
     }
 }
 

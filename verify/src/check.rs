@@ -113,6 +113,8 @@ pub(crate) enum Check {
     BaseValues,
     /// Comments: the head of the file.
     Head,
+    /// Comments: functions are those that the options of the head ask for.
+    Chosen,
     /// Comments: the box of rounding errors.
     StatedBox,
     /// Comments: facts of functions stand in their documentation alone.

@@ -389,20 +389,25 @@ impl Checker {
             && self.exact.iter().all(|p| p.reference.two_derivations_agree)
     }
 
-    /// All functions of a module, those that it lacks last.
+    /// All functions of a module, those that it lacks although they were asked for last.
     pub fn functions(&self, module: &Module) -> Vec<FunctionReport> {
         let mut reports: Vec<FunctionReport> =
             parallel_map(&module.functions, |(name, function)| self.function(name, function, module.real));
+        let chosen = module.chosen();
+        let asked_for = |name: &String| chosen.as_ref().is_none_or(|chosen| chosen.contains(name));
+        let lacking = self.lacking(module).into_iter().filter(asked_for);
+        reports.extend(lacking.map(|name| refused(&name, "the module does not have it".into())));
+        reports
+    }
+
+    /// The functions that a module of all functions has, and this one lacks.
+    pub fn lacking(&self, module: &Module) -> Vec<String> {
         // An optional one is missing where the arm has it.
         let of_arm = |name: &str| !self.points.is_empty() && self.points.iter().all(|point| point.knows(name));
         let needed = |name: &String| !self.manipulator.is_massless() || of_arm(name);
         let required = Promise::required().into_iter().filter(|name| needed(name) && Check::Required.is_made());
-        for name in required.chain(Promise::optional().filter(|name| of_arm(name) && Check::Optional.is_made())) {
-            if !module.functions.iter().any(|(other, _)| *other == name) {
-                reports.push(refused(&name, "the module does not have it".into()));
-            }
-        }
-        reports
+        let optional = Promise::optional().filter(|name| of_arm(name) && Check::Optional.is_made());
+        required.chain(optional).filter(|name| !module.functions.iter().any(|(other, _)| other == name)).collect()
     }
 
     /// One function.

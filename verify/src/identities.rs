@@ -24,7 +24,7 @@ struct Running<'a> {
 }
 
 /// The reason for skipping an identity whose functions are missing in the module.
-const ABSENT: &str = "the module does not have its functions";
+pub(crate) const ABSENT: &str = "the module does not have its functions";
 
 type Entries = Vec<Residue>;
 type Rates = Dual<Residue>;

@@ -38,6 +38,9 @@ pub(crate) use plain::camel;
 /// The maximum length of a module, in bytes; that of a chain of 32 joints takes a third.
 pub const LONGEST: usize = 32 << 20;
 
+/// The beginning of the line of the head that names options.
+const OPTIONS: &str = "Options:";
+
 /// Prefixes of the lines that state a fact about a function.
 pub(crate) const FACTS: [&str; 2] = ["Cost: ", "Rounding error: "];
 
@@ -108,6 +111,24 @@ impl Module {
             Language::Matlab => matlab::read(text),
         }?;
         Ok(Module { facts: text.lines().filter(|line| is_fact(line)).count(), ..module })
+    }
+
+    /// The options of `armgen generate` that the head names; empty where it names none.
+    pub fn options(&self) -> String {
+        let lines = self.head.iter().map(|line| line.trim());
+        let stated = lines.skip_while(|line| !line.starts_with(OPTIONS)).take_while(|line| !line.is_empty());
+        let joined = stated.fold(String::new(), |all, line| match all.is_empty() || all.ends_with(',') {
+            true => all + line,
+            false => all + " " + line,
+        });
+        joined.strip_prefix(OPTIONS).unwrap_or_default().trim_start().to_owned()
+    }
+
+    /// The functions that were asked for, if the head names some.
+    pub fn chosen(&self) -> Option<BTreeSet<String>> {
+        let options = self.options();
+        let (_, names) = options.split_once("--functions ")?;
+        Some(names.split(' ').next()?.split(',').map(String::from).collect())
     }
 
     /// An empty module with 64-bit floats.

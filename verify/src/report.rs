@@ -103,6 +103,8 @@ pub struct Report {
     pub scalar: String,
     /// `libm`, `std` or `fast`; empty without sines.
     pub trig: String,
+    /// The options of `armgen generate` that the head of the module names.
+    pub options: String,
     /// SHA-256 of the description's text, hexadecimal.
     pub input: String,
     /// SHA-256 of the module's text, hexadecimal.
@@ -113,6 +115,8 @@ pub struct Report {
     pub constants: Vec<ConstantReport>,
     /// Functions in the order of the text, missing ones last.
     pub functions: Vec<FunctionReport>,
+    /// Functions that the head of the module does not ask for, and that the arm has.
+    pub left_out: Vec<String>,
     /// Identities.
     pub identities: Vec<IdentityReport>,
     /// The box of the error bounds.
@@ -126,11 +130,13 @@ impl Report {
             robot: String::new(),
             scalar: String::new(),
             trig: String::new(),
+            options: String::new(),
             input,
             output,
             faults: Vec::new(),
             constants: Vec::new(),
             functions: Vec::new(),
+            left_out: Vec::new(),
             identities: Vec::new(),
             domain: Domain::default(),
         }
@@ -247,6 +253,9 @@ impl fmt::Display for Report {
                 Ok(false) => writeln!(f, "DOES NOT HOLD: {}", report.name)?,
                 Err(why) => writeln!(f, "NOT CHECKED: {}: {why}", report.name)?,
             }
+        }
+        if !self.left_out.is_empty() {
+            writeln!(f, "not asked for, and not in the module: {}", self.left_out.join(", "))?;
         }
         write!(f, "{}", if self.passed() { "verified" } else { "NOT verified" })
     }

@@ -32,6 +32,10 @@ pub fn faults(module: &Module, report: &Report) -> Vec<String> {
         Err(_) => true,
     };
     let mut faults = Vec::new();
+    if let (Some(chosen), true) = (module.chosen(), Check::Chosen.is_made()) {
+        let others = module.functions.iter().filter(|(name, _)| !chosen.contains(name));
+        faults.extend(others.map(|(name, _)| format!("the head of the file: its options do not ask for `{name}`")));
+    }
     let mut stated = 0;
     for (name, function) in &module.functions {
         let Ok(function) = function else { continue };

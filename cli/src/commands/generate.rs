@@ -45,8 +45,8 @@ pub(crate) struct Choices {
     /// the operation, in Rust and C (docs/performance.md)
     #[arg(long)]
     fma: bool,
-    /// Functions of the module, separated by commas; all if none is named (`armgen count FILE` lists them); not with --verify
-    /// or --tests, which are of the whole module
+    /// Functions of the module, separated by commas; all if none is named (`armgen count FILE` lists them); not with --tests,
+    /// which are of the whole module
     #[arg(long, value_name = "NAMES", value_delimiter = ',')]
     functions: Vec<String>,
 }
@@ -55,7 +55,7 @@ pub(crate) struct Choices {
 #[derive(Debug, clap::Args)]
 pub(crate) struct Beside {
     /// Verify the module and write the certificate beside it: robot.cert.json for robot.rs
-    #[arg(long, conflicts_with_all = ["batch", "functions"])]
+    #[arg(long, conflicts_with = "batch")]
     verify: bool,
     /// Write a test file beside it, robot_test.rs: identities and reference values, run on your machine; robot_test.c,
     /// robot.test.mjs, test_robot.py, robotTest.m in other languages

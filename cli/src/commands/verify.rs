@@ -82,24 +82,15 @@ fn verified(description: &Path, module: &Path, language: Option<Language>) -> Re
     };
     terminal::error(&format!("{place}: {fault}"));
     let why = companions::why_different(text.text(), &source);
-    let options = options_of(language, &report);
+    let mut options = if language == Language::Rust { String::new() } else { format!(" --language {}", language.name()) };
+    if !report.options.is_empty() {
+        options += &format!(" {}", report.options);
+    }
     let (description, module) = (description.display(), module.display());
     terminal::note(&format!(
         "{module} {why}; `armgen generate {description}{options} --out {module} --verify` writes module and certificate again"
     ));
     Err(FAULTY)
-}
-
-/// The options that give a module of the same language, scalar and sines, as far as its text was read.
-fn options_of(language: Language, report: &Report) -> String {
-    let usual = if language == Language::Rust { "libm" } else { "fast" };
-    let named = [
-        ("language", language.name(), Language::Rust.name()),
-        ("scalar", report.scalar.as_str(), "f64"),
-        ("trig", report.trig.as_str(), usual),
-    ];
-    let unusual = named.iter().filter(|(_, value, usual)| !value.is_empty() && value != usual);
-    unusual.map(|(option, value, _)| format!(" --{option} {value}")).collect()
 }
 
 /// The given language, or the language of the extension. Without either there is an error: advice about a guess would mislead.

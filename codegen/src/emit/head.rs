@@ -4,6 +4,11 @@ use std::collections::BTreeMap;
 
 use armgen_description::origin::Origin;
 
+use crate::emit::Language;
+use crate::kinds::Scalar;
+use crate::pass::Pass;
+use crate::program::{Module, Trig};
+
 /// The lines at the head of a file, and notes below them.
 pub(super) fn lines(origin: &Origin, notes: &[String]) -> Vec<String> {
     let mut lines = vec![
@@ -16,6 +21,47 @@ pub(super) fn lines(origin: &Origin, notes: &[String]) -> Vec<String> {
         lines.push(String::new());
         lines.extend(notes.iter().cloned());
     }
+    lines
+}
+
+/// The head of a module: the same with the options of `armgen generate` that make it again, where they are not the usual ones.
+pub(super) fn of_module(module: &Module, language: Language, origin: &Origin, notes: &[String]) -> Vec<String> {
+    let mut lines = lines(origin, notes);
+    lines.splice(1..1, options(module, language));
+    lines
+}
+
+/// Columns of the line of options.
+const WIDTH: usize = 132;
+
+/// The line of options, broken at blanks and behind commas.
+fn options(module: &Module, language: Language) -> Vec<String> {
+    // Only Rust has the crate libm.
+    let trig = match module.trig {
+        Trig::Libm if language != Language::Rust => Trig::Std,
+        trig => trig,
+    };
+    let without = Pass::ALL.into_iter().filter(|pass| module.without.contains(*pass)).map(Pass::name);
+    let all = [
+        ("scalar", (module.scalar != Scalar::F64).then(|| "f32".to_owned())),
+        ("trig", (trig != Trig::of_language(language)).then(|| trig.name().to_owned())),
+        ("without", Some(without.collect::<Vec<_>>().join(",")).filter(|names| !names.is_empty())),
+        ("batch", module.batch.map(|lanes| lanes.to_string())),
+        ("fma", module.functions.iter().any(|function| function.fuse).then(String::new)),
+        ("functions", module.selection.names().map(|names| names.collect::<Vec<_>>().join(","))),
+    ];
+    let mut lines: Vec<String> = Vec::new();
+    for (option, value) in all.iter().filter_map(|(option, value)| Some((option, value.as_ref()?))) {
+        let words = format!(" --{option} {value}");
+        for piece in words.trim_end().split_inclusive([' ', ',']) {
+            match lines.last_mut() {
+                Some(line) if line.len() + piece.len() <= WIDTH => line.push_str(piece),
+                Some(_) => lines.push(piece.to_owned()),
+                None => lines.push(format!("Options:{piece}")),
+            }
+        }
+    }
+    lines.iter_mut().for_each(|line| line.truncate(line.trim_end().len()));
     lines
 }
 

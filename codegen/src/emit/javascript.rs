@@ -10,7 +10,7 @@ use super::plain::{
 };
 use super::private::filled;
 use super::rust::asks_for_sines;
-use super::{Notes, Origin};
+use super::{Language, Notes, Origin};
 use crate::catalogue::{Argument, Length, Quantity};
 use crate::exact::Number;
 use crate::kinds::Scalar;
@@ -41,7 +41,7 @@ impl Syntax for JavaScript {
 
 /// The module.
 pub fn print(module: &Module, origin: &Origin, notes: &Notes) -> String {
-    let mut text = head(module, origin, notes, "//");
+    let mut text = head(module, Language::JavaScript, origin, notes, "//");
     let documentation = constants_comments(&DescribedParameters::of(module));
     for (constant, (_, comment)) in constants(module, 0).iter().zip(&documentation) {
         let _ = writeln!(text, "\n{comment}export const {} = {};", constant.name, value_of(&constant.value));
@@ -73,7 +73,7 @@ fn private(template: &str) -> String {
 
 /// The declarations of the module.
 pub fn declarations(module: &Module, origin: &Origin, notes: &Notes) -> String {
-    let mut text = head(module, origin, notes, "//");
+    let mut text = head(module, Language::JavaScript, origin, notes, "//");
     let documentation = constants_comments(&DescribedParameters::of(module));
     for (constant, (_, comment)) in constants(module, 0).iter().zip(&documentation) {
         let _ = writeln!(text, "\n{comment}export declare const {}: {};", constant.name, type_of(&constant.value));

@@ -9,7 +9,7 @@ use std::fmt::Write;
 use super::documentation::{self, Block, Described, DescribedParameters, Link};
 use super::plain::{camel, constants, constants_documentation, described, expression, head, places, waves, Syntax, Value};
 use super::private::filled;
-use super::{Notes, Origin};
+use super::{Language, Notes, Origin};
 use crate::catalogue::{Argument, Quantity, ResultPart};
 use crate::exact::Number;
 use crate::kinds::Scalar;
@@ -72,7 +72,7 @@ impl Syntax for Matlab {
 
 /// The files of the package.
 pub fn print(module: &Module, origin: &Origin, notes: &Notes) -> Vec<File> {
-    let head = head(module, origin, notes, "%");
+    let head = head(module, Language::Matlab, origin, notes, "%");
     let mut files = vec![contents(module, &head), model(module, &head)];
     files.extend(module.functions.iter().map(|function| file(module, function, &head, notes)));
     files

@@ -2,7 +2,7 @@
 //! program. A language only defines how it writes an entry, a number and an operator.
 
 use super::documentation::{self, has_base_parameters, Block, Described, DescribedParameters};
-use super::{Notes, Origin};
+use super::{Language, Notes, Origin};
 use crate::catalogue::{Argument, Parameter, Quantity, ResultPart, Sizes};
 use crate::exact::Number;
 use crate::program::listing::{angles, Angle, Expression, Name};
@@ -292,9 +292,9 @@ pub(super) fn constants(module: &Module, first: usize) -> Vec<Constant> {
 }
 
 /// The head of a file as comment lines: its origin, and the functions that the module lacks.
-pub(super) fn head(module: &Module, origin: &Origin, notes: &Notes, sign: &str) -> String {
+pub(super) fn head(module: &Module, language: Language, origin: &Origin, notes: &Notes, sign: &str) -> String {
     let absent = module.absent.iter().map(|absent| format!("There is no `{}`: {}.", absent.function, absent.reason));
-    let lines = crate::emit::head::lines(origin, &notes.head).into_iter().chain(absent);
+    let lines = crate::emit::head::of_module(module, language, origin, &notes.head).into_iter().chain(absent);
     lines.map(|line| format!("{sign} {line}").trim_end().to_string() + "\n").collect()
 }
 

@@ -12,7 +12,7 @@ use super::plain::{
 };
 use super::private::filled;
 use super::rust::asks_for_sines;
-use super::{Notes, Origin};
+use super::{Language, Notes, Origin};
 use crate::catalogue::{Argument, Length, Quantity};
 use crate::exact::Number;
 use crate::kinds::Scalar;
@@ -48,7 +48,7 @@ impl Syntax for Python {
 /// The module.
 pub fn print(module: &Module, origin: &Origin, notes: &Notes) -> String {
     let python = Python { scalar: module.scalar };
-    let mut text = head(module, origin, notes, "#");
+    let mut text = head(module, Language::Python, origin, notes, "#");
     text += "\nfrom __future__ import annotations\n\nfrom typing import Any, Callable, Final, NamedTuple, TypeVar\n\n";
     let public: Vec<String> = constants(module, 0)
         .iter()

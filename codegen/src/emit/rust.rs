@@ -18,7 +18,7 @@ use quote::{format_ident, quote, ToTokens};
 use super::documentation::{self as common, Described, DescribedParameters};
 use super::plain::{asks_for_exponentials, asks_for_signs};
 use super::private::SIGN;
-use super::{Notes, Origin};
+use super::{Language, Notes, Origin};
 use crate::catalogue::{Absent, Length, Quantity, ResultPart, Sizes};
 use crate::exact::Number;
 use crate::kinds::Scalar;
@@ -77,7 +77,9 @@ impl Text {
             }
             text += own;
         }
-        head(origin, &notes.head) + &absent(module) + &spaced(&(text + &self.after))
+        commented(&crate::emit::head::of_module(module, Language::Rust, origin, &notes.head))
+            + &absent(module)
+            + &spaced(&(text + &self.after))
     }
 }
 
@@ -105,11 +107,12 @@ pub fn print_runtime(module: &Module, origin: &Origin) -> String {
 
 /// The comment with the origin of a file, and notes below it.
 pub(in crate::emit) fn head(origin: &Origin, notes: &[String]) -> String {
-    crate::emit::head::lines(origin, notes)
-        .iter()
-        .map(|line| format!("// {line}").trim_end().to_string() + "\n")
-        .collect::<String>()
-        + "\n"
+    commented(&crate::emit::head::lines(origin, notes))
+}
+
+/// Lines of a head as comments.
+fn commented(lines: &[String]) -> String {
+    lines.iter().map(|line| format!("// {line}").trim_end().to_string() + "\n").collect::<String>() + "\n"
 }
 
 fn format(tokens: TokenStream) -> String {

@@ -52,6 +52,11 @@ impl Selection {
         self.0.as_ref().is_none_or(|names| names.contains(&quantity.function_name(with_parameters)))
     }
 
+    /// The names of the functions, if some are named.
+    pub fn names(&self) -> Option<impl Iterator<Item = &str>> {
+        Some(self.0.as_ref()?.iter().map(String::as_str))
+    }
+
     /// Whether all functions are wanted, because none is named.
     pub fn is_all(&self) -> bool {
         self.0.is_none()

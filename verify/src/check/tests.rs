@@ -320,6 +320,20 @@ fn functions(tally: &mut Tally, scara: &Given) {
     let absent = (Optional, "center_of_mass: the module does not have it");
     tally.text(scara, "no centre of mass", &without("pub fn center_of_mass("), &[absent]);
     let identities = |why: &'static str| (Identities, why);
+    // The head names the functions of the module, and one of them fewer or more.
+    let names: Vec<&str> = module.lines().filter_map(|line| line.strip_prefix("pub fn ")?.split('(').next()).collect();
+    let asking =
+        |names: &str| module.replacen(". Do not edit.\n", &format!(". Do not edit.\n// Options: --functions {names}\n"), 1);
+    tally.text(
+        scara,
+        "another function",
+        &asking(&names[1..].join(",")),
+        &[(Chosen, "its options do not ask for `direct_kinematics`")],
+    );
+    let chosen = asking(&names.join(","));
+    let lacking = chosen.replace(item(module, "pub fn momentum("), "");
+    let asked_for = (Required, "momentum: the module does not have it");
+    tally.text(scara, "a function that is asked for", &lacking, &[asked_for]);
     let g = "pub fn gravity(";
     let short = [(Places, "gravity: its result does not have the 4 entries"), identities("equations_of_motion = (B, C, g)")];
     tally.module(scara, g, "-98.1, 0.0]", "-98.1]", &short);

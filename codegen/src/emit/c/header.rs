@@ -6,7 +6,7 @@ use super::{prefix, returns_a_number};
 use crate::catalogue::{Absent, Length};
 use crate::emit::documentation::{self, Block, Described, DescribedParameters, Link};
 use crate::emit::plain::of_robot;
-use crate::emit::Origin;
+use crate::emit::{head, Origin};
 use crate::exact::Number;
 use crate::kinds::Scalar;
 use crate::program::listing::decimal;
@@ -35,10 +35,9 @@ pub(super) fn link<'a>(name: &'a str, upper: &'a str) -> impl Fn(Link<'_>) -> St
     }
 }
 
-/// The beginning of both headers: origin, missing functions, and the guard.
-pub(super) fn opening(origin: &Origin, notes: &[String], absent: &[Absent], upper: &str) -> String {
-    let absent = absent.iter().map(|absent| format!("There is no `{}`: {}.", absent.function, absent.reason));
-    let head = crate::emit::head::lines(origin, notes).into_iter().chain(absent).collect();
+/// The beginning of both headers: the lines of the head, missing functions, and the guard.
+pub(super) fn opening(mut head: Vec<String>, absent: &[Absent], upper: &str) -> String {
+    head.extend(absent.iter().map(|absent| format!("There is no `{}`: {}.", absent.function, absent.reason)));
     let head = comment(&[Block::Verbatim(head)], &|_| String::new());
     let guard = format!("ARMGEN_{upper}_H");
     format!("{head}#ifndef {guard}\n#define {guard}\n\n")
@@ -47,7 +46,7 @@ pub(super) fn opening(origin: &Origin, notes: &[String], absent: &[Absent], uppe
 pub(super) fn header(module: &Module, origin: &Origin) -> String {
     let name = prefix(module);
     let upper = macros_of(&name);
-    let mut text = opening(origin, &[], &[], &upper);
+    let mut text = opening(head::lines(origin, &[]), &[], &upper);
     text += &of_robot(OF_RUST, &name, &upper);
     text += "#ifdef __cplusplus\nextern \"C\" {\n#endif\n\n";
     text += &macros(module);

@@ -13,7 +13,7 @@ use crate::emit::plain::{
 };
 use crate::emit::private::filled;
 use crate::emit::rust::asks_for_sines;
-use crate::emit::{Notes, Origin};
+use crate::emit::{head, Language, Notes, Origin};
 use crate::kinds::Scalar;
 use crate::program::listing::{BodyPart, Line, Listing, Name};
 use crate::program::{Function, Module, Trig};
@@ -36,7 +36,7 @@ pub(super) fn print(module: &Module, origin: &Origin, notes: &Notes) -> String {
     let name = prefix(module);
     let upper = macros_of(&name);
     let c = C { module, name, upper };
-    let mut text = opening(origin, &notes.head, &module.absent, &c.upper);
+    let mut text = opening(head::of_module(module, Language::C, origin, &notes.head), &module.absent, &c.upper);
     if module.batch.is_some() {
         text += "#include <stddef.h>\n\n";
     }

@@ -6,7 +6,7 @@ use super::{link, result_type, structure};
 use crate::emit::c;
 use crate::emit::documentation::{self, Block};
 use crate::emit::plain::head;
-use crate::emit::{Notes, Origin};
+use crate::emit::{Language, Notes, Origin};
 use crate::kinds::Scalar;
 use crate::program::Module;
 
@@ -27,7 +27,7 @@ pub fn print(module: &Module, origin: &Origin) -> Native {
         Scalar::F64 => 8,
         Scalar::F32 => 16,
     };
-    let mut text = head(module, origin, &Notes::default(), "#");
+    let mut text = head(module, Language::Python, origin, &Notes::default(), "#");
     text +=
         "\n\"\"\"The functions as a library of C, for many states at a time: `load()` compiles it where it is used.\"\"\"\n\n";
     text += "from __future__ import annotations\n\nimport ctypes\nimport hashlib\nimport math\nimport os\nimport platform\nimport shlex\nimport shutil\n";
