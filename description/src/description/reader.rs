@@ -58,6 +58,7 @@ const URDF_JOINT: &[Key] = &[
     optional("spring"),
     optional("armature"),
 ];
+const GRAVITY: &[Key] = &[required("argument", "argument: [0, 0, -9.81]")];
 const INVERSE_KINEMATICS: &[Key] = &[optional("target"), optional("given")];
 const LIMITS: &[Key] = &[usual("position", "position: [-pi/2, pi/2]"), optional("velocity"), optional("effort")];
 const LINK: &[Key] = &[required("mass", "mass: 5"), optional("com"), optional("inertia"), optional("attached")];
@@ -132,7 +133,8 @@ impl Reader<'_> {
         RobotDescription {
             name: fields.get("name").and_then(|(key, node)| self.word(node, key, "name")),
             convention,
-            gravity: fields.get("gravity").and_then(|(key, node)| self.vector(node, key, "gravity", ["x", "y", "z"])),
+            gravity: fields.get("gravity").and_then(|(key, node)| self.gravity(node, key)),
+            gravity_is_argument: fields.get("gravity").is_some_and(|(_, node)| matches!(node.kind, Kind::Mapping(_))),
             units: fields.get("units").map_or_else(Vec::new, |(key, node)| self.units(node, key)),
             products: fields.get("products").and_then(|(key, node)| {
                 let words = [("tensor", Products::Tensor), ("integral", Products::Integral)];
@@ -151,6 +153,18 @@ impl Reader<'_> {
                 .and_then(|(key, node)| self.inverse_kinematics(node, key))
                 .unwrap_or_default(),
             allow: fields.get("allow").map_or_else(Vec::new, |(key, node)| self.allow(node, key)),
+        }
+    }
+
+    /// The acceleration of free fall, or its nominal value where it is an argument.
+    fn gravity(&mut self, node: &Node, key: Span) -> Option<Spanned<[Value; 3]>> {
+        let parts = ["x", "y", "z"];
+        match node.kind {
+            Kind::Mapping(_) => {
+                let (key, node) = self.mapping(node, "`gravity`", key, GRAVITY)?.get("argument")?;
+                self.vector(node, key, "argument", parts)
+            }
+            _ => self.vector(node, key, "gravity", parts),
         }
     }
 
@@ -434,7 +448,7 @@ impl Reader<'_> {
     fn vector<const N: usize>(&mut self, node: &Node, key: Span, name: &str, parts: [&str; N]) -> Option<Spanned<[Value; N]>> {
         // Whoever copies the help shall have what is valid, and shall not lose gravity.
         let example = match (name, N) {
-            ("gravity", _) => "0, 0, -9.81".to_owned(),
+            ("gravity" | "argument", _) => "0, 0, -9.81".to_owned(),
             ("axis", _) => "0, 0, 1".to_owned(),
             ("quat", _) => "1, 0, 0, 0".to_owned(),
             ("xyaxes", _) => "1, 0, 0, 0, 1, 0".to_owned(),
