@@ -69,6 +69,8 @@ fn main() {
     }
     // An arm without mass, for `tests/kinematics_alone.rs`.
     Robot::new("data/kinematics_alone.yaml").generate();
+    // An arm with gravity as an argument, for `tests/gravity.rs`.
+    Robot::new("data/mounted.yaml").generate();
     // With inverse kinematics, for `tests/postures.rs`.
     for (robot, scalar) in POSTURES {
         let stem = Path::new(robot).file_stem().expect("a file's name").to_string_lossy();

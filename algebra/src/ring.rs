@@ -72,6 +72,8 @@ pub enum Symbol {
     Torque(u16),
     /// A named parameter of the description, or an entry of the parameter vector pi.
     Parameter(u16),
+    /// A coordinate of the acceleration of free fall in the base frame, where that is an argument: 0, 1, 2 along x, y, z.
+    Gravity(u16),
 }
 
 /// A sum of joint variables, some of them taken away, a bit for each joint; and the constant angle of the field ([`turn::Turn`]), if that
@@ -149,7 +151,7 @@ impl Symbol {
         }
     }
 
-    /// The index of its joint or parameter; that of its first joint.
+    /// The index of its joint, parameter or coordinate; that of its first joint.
     pub fn index(self) -> u16 {
         match self {
             Symbol::Sine(i)
@@ -164,7 +166,8 @@ impl Symbol {
             | Symbol::ReferenceRate(i)
             | Symbol::ReferenceAcceleration(i)
             | Symbol::Torque(i)
-            | Symbol::Parameter(i) => i,
+            | Symbol::Parameter(i)
+            | Symbol::Gravity(i) => i,
             Symbol::SineOf(sum) | Symbol::CosineOf(sum) => (sum.plus | sum.minus).trailing_zeros() as u16,
         }
     }
@@ -428,6 +431,7 @@ impl Pool {
             Symbol::Stribeck(i) => value(10, i),
             Symbol::GravitySize(i) => value(11, i),
             Symbol::GravitySign(i) => value(12, i),
+            Symbol::Gravity(i) => value(13, i),
         }
     }
 

@@ -83,7 +83,7 @@ pub fn document_bounds(source: &Source, generated: &mut Generated) -> Result<(),
     let manipulator = valid(source)?;
     let module = Module::read(&generated.module)?;
     let found = bounds::of(&manipulator, &module, &Claims::from_numbers(&generated.constants));
-    let bounds::Notes { head, functions } = bounds::notes(&found);
+    let bounds::Notes { head, functions } = bounds::notes(&found, module.sizes().gravity);
     generated.annotate(&Notes { head, functions });
     Ok(())
 }

@@ -183,6 +183,8 @@ pub struct Module {
     pub joints: Vec<Joint>,
     /// Acceleration of free fall in the base frame, m/s².
     pub gravity: [Number; 3],
+    /// Whether that is an argument of the functions which it enters, and `gravity` its nominal value.
+    pub gravity_is_argument: bool,
     /// Whether springs are part of g and U.
     pub has_springs: bool,
     /// Whether friction has an offset or grows with the cube of a rate.

@@ -6,7 +6,7 @@ use std::collections::BTreeMap;
 
 use armgen_algebra::optimise::optimise;
 
-use crate::catalogue::{self, Absent, Argument, Length, Quantity};
+use crate::catalogue::{self, Absent, Length, Quantity};
 use crate::derive::derivation::Derivation;
 use crate::derive::parameters::{nominal, ParameterKind, View};
 use crate::exact::Number;
@@ -63,6 +63,7 @@ pub fn module(model: &Model, options: &Options) -> Module {
         name: manipulator.name.clone(),
         joints: manipulator.joints.iter().map(joint).collect(),
         gravity: manipulator.gravity.each_ref().map(|g| nominal(manipulator, g)),
+        gravity_is_argument: manipulator.gravity_is_argument,
         has_springs: manipulator.has_springs(),
         has_more_friction: manipulator.has_more_friction(),
         has_stribeck: manipulator.has_stribeck(),
@@ -122,10 +123,7 @@ fn lower(model: &Model, quantity: &'static Quantity, with_parameters: bool, deri
     let base_parameters = if quantity.has_length(Length::BaseParameters) { model.base_parameters().len() } else { 0 };
     let order = quantity.entries_by_columns(&model.sizes_with(base_parameters)).concat();
     let (steps, outputs) = steps(&derivation.pool, &derivation.entries, &order);
-    let mut arguments = quantity.arguments.to_vec();
-    if with_parameters {
-        arguments.insert(0, Argument::Pi);
-    }
+    let arguments = quantity.arguments_of(with_parameters, model.manipulator.gravity_is_argument).collect();
     let method = derivation.method;
     let mut function =
         Function { quantity, with_parameters, arguments, steps, outputs, method, stribeck: BTreeMap::new(), fuse: false };

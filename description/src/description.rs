@@ -46,6 +46,8 @@ pub struct RobotDescription {
     pub convention: Option<Spanned<Convention>>,
     /// Acceleration of gravity in the base frame.
     pub gravity: Option<Spanned<[Value; 3]>>,
+    /// Whether that is an argument of functions, and `gravity` its nominal value.
+    pub gravity_is_argument: bool,
     /// The units of plain numbers, those that the file names. The values are in SI units already.
     pub units: Vec<NamedUnit>,
     /// The meaning of products of inertia. The values are elements of the tensor already.

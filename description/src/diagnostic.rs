@@ -224,6 +224,8 @@ codes! {
         RepeatedParameter Error "repeated-parameter",
         /// tau is not linear in a name that `regressor` lists.
         NonlinearParameter Error "nonlinear-parameter",
+        /// Gravity is an argument, and its nominal value holds a name that `regressor` lists.
+        GravityArgument Error "gravity-argument",
         /// No joint moves any row of the task.
         ImmovableTask Error "immovable-task",
         /// The inertia matrix is singular for every q.

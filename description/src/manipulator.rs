@@ -49,6 +49,8 @@ pub struct Manipulator {
     pub parameters: Vec<Parameter>,
     /// Acceleration of gravity in the base frame, m/s².
     pub gravity: [Polynomial; 3],
+    /// Whether that is an argument of functions, and `gravity` its nominal value.
+    pub gravity_is_argument: bool,
     /// Joints from base to tip; a parent always precedes its children.
     pub joints: Vec<Joint>,
     /// The link that carries the end effector.

@@ -129,6 +129,9 @@ fn validate(
     let payload = description.payload.as_ref().map(|p| bodies::part(p, Some(Pose::identity()), "the payload", &mut context));
     let task = choices::task(description, context.diagnostics);
     let regressor = choices::regressor(description, &mut context);
+    if let (Some(gravity), Some(regressor)) = (&gravity, &regressor) {
+        choices::gravity_argument(description, gravity, regressor, &mut context);
+    }
     let inverse_kinematics = choices::inverse_kinematics(description, context.diagnostics);
     bodies::warn_of_planar(&mut context);
     // An unreadable expression may use any name.
@@ -148,6 +151,7 @@ fn validate(
         name: description.name.as_ref()?.value.clone(),
         parameters: symbols,
         gravity: gravity?,
+        gravity_is_argument: description.gravity_is_argument,
         joints,
         tip,
         tool,

@@ -101,10 +101,7 @@ pub fn function<T: Scalar>(module: &Module, of: &steps::Function) -> Function<T>
         of.steps.iter().map(operation).collect(),
         of.outputs.iter().map(|output| Output { operand: operand(&output.operand), negated: output.negated }).collect(),
     );
-    let argument = |argument: &Argument| numbers::Argument {
-        name: argument.name().into(),
-        length: if *argument == Argument::Pi { sizes.parameters } else { sizes.dof },
-    };
+    let argument = |argument: &Argument| numbers::Argument { name: argument.name().into(), length: argument.length().of(&sizes) };
     let results = of.quantity.result.iter().map(|part| numbers::Result {
         name: part.name.into(),
         shape: part.lengths.iter().map(|length| length.of(&sizes)).collect(),

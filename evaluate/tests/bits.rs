@@ -58,6 +58,7 @@ fn compare<T: Scalar + Into<f64>>(robot: &Emitted, scalar: armgen_codegen::Scala
                         "dqr" => &mut arguments.dqr,
                         "ddqr" => &mut arguments.ddqr,
                         "tau" => &mut arguments.tau,
+                        "g0" => &mut arguments.g0,
                         other => panic!("a new argument, {other}"),
                     };
                     *place = vector;
@@ -96,4 +97,32 @@ fn every_robot_has_the_bits_of_its_module() {
     for robot in ALL {
         check(robot, 2);
     }
+}
+
+/// An arm with gravity as an argument, given the nominal vector, is the arm that has it fixed.
+#[test]
+fn programs_take_gravity_as_an_argument() {
+    let text = include_str!("../../tests/data/mounted.yaml");
+    let fixed = text.replace("{argument: [1, -2, -9.81]}", "[1, -2, -9.81]");
+    let torques = |text: &str, before: &[&[f64]]| {
+        let source = Source::new("mounted.yaml", text);
+        let (manipulator, places) = validate::read(&source).0.expect("a valid arm");
+        let module = armgen_codegen::programs(&Model::new(manipulator), &places, &Options::default()).expect("of usual size");
+        let program =
+            programs::<f64>(&module).into_iter().find(|program| program.name() == "inverse_dynamics").expect("it has mass");
+        let (q, dq, ddq) = ([0.3, -0.2, 1.1], [0.5, 0.4, -0.6], [1.0, -2.0, 0.7]);
+        let given: Vec<&[f64]> = before.iter().copied().chain([&q[..], &dq[..], &ddq[..]]).collect();
+        let names: Vec<String> = program.arguments().iter().map(|argument| argument.name.clone()).collect();
+        let mut result = vec![0.0; program.outputs()];
+        program.run(&given, &mut result, &mut program.workspace()).expect("lengths that fit");
+        (names, result)
+    };
+    let (names, found) = torques(text, &[&[1.0, -2.0, -9.81]]);
+    let (_, expected) = torques(&fixed, &[]);
+    assert_eq!(names, ["g0", "q", "dq", "ddq"]);
+    for (a, b) in found.iter().zip(&expected) {
+        assert!((a - b).abs() <= 1e-12 * b.abs().max(1.0), "{found:?} {expected:?}");
+    }
+    let (_, weightless) = torques(text, &[&[0.0; 3]]);
+    assert!(weightless.iter().zip(&expected).any(|(a, b)| (a - b).abs() > 1.0));
 }

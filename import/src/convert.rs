@@ -111,7 +111,13 @@ impl<'d> Converter<'d> {
             Convention::Urdf => "urdf",
         };
         let mut text = vec![format!("name: {}", description.name.as_ref()?.value), format!("convention: {}", word(to))];
-        text.extend(description.gravity.as_ref().map(|gravity| format!("gravity: {}", self.vector(&gravity.value))));
+        text.extend(description.gravity.as_ref().map(|gravity| {
+            let vector = self.vector(&gravity.value);
+            match description.gravity_is_argument {
+                true => format!("gravity: {{argument: {vector}}}"),
+                false => format!("gravity: {vector}"),
+            }
+        }));
         if !description.parameters.is_empty() {
             text.push("parameters:".into());
         }
@@ -452,6 +458,7 @@ impl<'d> Converter<'d> {
             name: _,
             convention: _,
             gravity: _,
+            gravity_is_argument: _,
             units: _,
             products: _,
             parameters: _,

@@ -405,6 +405,7 @@ impl Writer<'_> {
             name: _,
             convention: _,
             gravity,
+            gravity_is_argument,
             units: _,
             products: _,
             parameters,
@@ -423,6 +424,7 @@ impl Writer<'_> {
         }
         for (what, given) in [
             ("the payload", payload.is_some()),
+            ("gravity as an argument, whose nominal value is taken", *gravity_is_argument),
             ("`task`", task.is_some()),
             ("`regressor`", regressor.as_ref().is_some_and(|r| !matches!(r.value, RegressorDescription::Standard))),
             ("`inverse_kinematics`", target.is_some() || given.is_some()),

@@ -162,6 +162,7 @@ fn data(
             Convention::Urdf => "urdf",
         },
         "gravity": module.gravity.each_ref().map(armgen_codegen::exact::Number::to_f64),
+        "gravityIsArgument": module.gravity_is_argument,
         "base": rows::base(manipulator, description),
         "rows": rows.iter().map(row).collect::<Vec<_>>(),
         "tool": bodies::tool(manipulator),

@@ -32,6 +32,7 @@ const FILES: &[(&str, &str)] = &[
     ("sliders", include_str!("../web/sliders.mjs")),
     ("sticky_picture", include_str!("../web/sticky_picture.mjs")),
     ("picture", include_str!("../web/picture.mjs")),
+    ("free_fall", include_str!("../web/free_fall.mjs")),
     ("sheet", include_str!("../web/sheet.mjs")),
     ("dependent_axes", include_str!("../web/dependent_axes.mjs")),
     ("lost_motion", include_str!("../web/lost_motion.mjs")),

@@ -21,14 +21,14 @@ export function sizes(data, state, length) {
     const lever = data.rows.map((row) => (row.type === "revolute" ? length : 1));
     const speed = () => Math.max(0, ...state.dq.map((x, i) => Math.abs(x) * lever[i]));
     const acceleration = () => Math.max(0, ...state.ddq.map((x, i) => Math.abs(x) * lever[i])) + (length > 0 ? speed() ** 2 / length : 0);
-    const weight = mass * Math.hypot(...data.gravity);
+    const weight = () => mass * Math.hypot(...data.gravity);
     return {
         pose: (_, j) => (j === 3 ? length : 1),
         jacobian: (i, j) => (i > 2 ? 1 : lever[j]),
         inertia: (i, j) => mass * lever[i] * lever[j],
         coriolis: (i, j) => (mass * lever[i] * lever[j] * speed()) / length,
-        gravity: (i) => weight * lever[i],
-        torque: (i) => (weight + mass * acceleration()) * lever[i],
-        energy: () => weight * length,
+        gravity: (i) => weight() * lever[i],
+        torque: (i) => (weight() + mass * acceleration()) * lever[i],
+        energy: () => weight() * length,
     };
 }

@@ -65,6 +65,8 @@ function quantities(data, state, arm) {
     const size = sizes(data, state, arm.size);
     const n = data.rows.length;
     const has = (name) => data.functions.includes(name);
+    /** The argument in front of the others, of arms that have it. */
+    const g0 = data.gravityIsArgument ? [data.gravity] : [];
     const joints = data.rows.map((row) => row.name);
     const slides = data.rows.map((row) => row.type === "prismatic");
     /** What turns and what slides have units of their own: in the heading where there is one, else at the rows and entries. */
@@ -109,12 +111,12 @@ function quantities(data, state, arm) {
         list.push({ ...matrix("coriolis_matrix", "C", "Coriolis and centrifugal matrix, by Christoffel symbols", "", n, n, () => robot.coriolisMatrix(state.q, state.dq)), ...inertia("/s"), size: size.coriolis, rowNames: joints, columnNames: joints });
         list.push(scalar("skew_symmetry", "sym(Ḃ − 2C)", "Largest entry of the symmetric part, sym(A) = (A + Aᵀ)/2, which is 0: what is left comes of Ḃ as a quotient of differences", "", () => skewSymmetry(state)));
     }
-    if (has("gravity")) list.push({ ...vector("gravity", "g", "Gravity term", "", n, () => robot.gravity(state.q), joints), ...forces, size: size.gravity });
+    if (has("gravity")) list.push({ ...vector("gravity", "g", "Gravity term", "", n, () => robot.gravity(...g0, state.q), joints), ...forces, size: size.gravity });
     if (has("friction")) list.push({ ...vector("friction", "F", "Friction", "", n, () => robot.friction(state.dq), joints), ...forces });
-    if (has("load_friction")) list.push({ ...vector("load_friction", "Fₗ", "Friction that grows with the load, Fₗ |g| sign(q̇)", "", n, () => robot.loadFriction(state.q, state.dq), joints), ...forces });
-    if (has("inverse_dynamics")) list.push({ ...vector("inverse_dynamics", "τ", "Torques of the motion, B q̈ + C q̇ + F + g", "", n, () => robot.inverseDynamics(state.q, state.dq, state.ddq), joints), ...forces, size: size.torque });
+    if (has("load_friction")) list.push({ ...vector("load_friction", "Fₗ", "Friction that grows with the load, Fₗ |g| sign(q̇)", "", n, () => robot.loadFriction(...g0, state.q, state.dq), joints), ...forces });
+    if (has("inverse_dynamics")) list.push({ ...vector("inverse_dynamics", "τ", "Torques of the motion, B q̈ + C q̇ + F + g", "", n, () => robot.inverseDynamics(...g0, state.q, state.dq, state.ddq), joints), ...forces, size: size.torque });
     if (has("kinetic_energy")) list.push(scalar("kinetic_energy", "T", "Kinetic energy", "J", () => robot.kineticEnergy(state.q, state.dq)));
-    if (has("potential_energy")) list.push({ ...scalar("potential_energy", "U", "Potential energy", "J", () => robot.potentialEnergy(state.q)), size: size.energy });
+    if (has("potential_energy")) list.push({ ...scalar("potential_energy", "U", "Potential energy", "J", () => robot.potentialEnergy(...g0, state.q)), size: size.energy });
     return list;
 }
 

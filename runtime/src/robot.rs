@@ -2,7 +2,8 @@
 //! function that not every robot has or not every controller needs.
 //!
 //! With the feature `runtime` of its crate, the emitted module of a robot implements these traits for two types. `Nominal` is a
-//! unit struct for the robot of the description. `WithParameters` is the same robot with parameters chosen at run time. The
+//! unit struct for the robot of the description. `WithParameters` is the same robot with parameters chosen at run time. Where the
+//! description has gravity as an argument, `Mounted` is the same robot under another gravity, and `WithParameters` has one, too. The
 //! methods take `&self` so that a robot may carry data.
 //!
 //! Frames and signs, for all methods. The base frame is the frame before the description's first row, or before `base` if given. The end

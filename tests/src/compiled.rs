@@ -136,7 +136,8 @@ impl Functions for Compiled {
     }
 
     fn call(&self, function: &str, arguments: &Arguments) -> Vec<f64> {
-        let Arguments { pi, q, dq, ddq, dqr, ddqr, tau } = arguments;
+        let Arguments { pi, q, dq, ddq, dqr, ddqr, tau, g0 } = arguments;
+        assert!(g0.is_empty(), "the arms compiled here have a fixed gravity");
         let mut question = format!("{} {function}", self.index);
         // Each list with its length: a judge only passes the arguments that a function needs.
         for list in [pi, q, dq, ddq, dqr, ddqr, tau] {

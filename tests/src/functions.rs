@@ -19,6 +19,8 @@ pub struct Arguments {
     pub ddqr: Vec<f64>,
     /// Joint torques.
     pub tau: Vec<f64>,
+    /// Acceleration of free fall, of arms where that is an argument.
+    pub g0: Vec<f64>,
 }
 
 /// What computes the functions of a robot.

@@ -124,6 +124,7 @@ fn operand(function: &Function, turn: f64, values: &[f64], arguments: &Arguments
         Symbol::ReferenceAcceleration(i) => given(Argument::Ddqr, &a.ddqr, i),
         Symbol::Torque(i) => given(Argument::Tau, &a.tau, i),
         Symbol::Parameter(i) => given(Argument::Pi, &a.pi, i),
+        Symbol::Gravity(i) => given(Argument::Gravity, &a.g0, i),
     }
 }
 

@@ -58,7 +58,7 @@ pub fn judge(what: &str, robot: &dyn Functions, text: &str, seed: u64, tolerance
 
 fn arguments(state: &State, pi: &[f64]) -> Arguments {
     let State { q, dq, ddq, dqr, ddqr } = state.clone();
-    Arguments { pi: pi.to_vec(), q, dq, ddq, dqr, ddqr, tau: Vec::new() }
+    Arguments { pi: pi.to_vec(), q, dq, ddq, dqr, ddqr, ..Arguments::default() }
 }
 
 fn unit(n: usize, k: usize, length: f64) -> Vec<f64> {

@@ -36,6 +36,7 @@ fn agree_with_the_reference_values() {
                 ddqr: s.ddq.clone(),
                 tau: s.tau.clone(),
                 pi: robot.nominal(),
+                ..Arguments::default()
             };
             let check = |function: &str, expected: Vec<f64>| {
                 agree(&format!("{name} sample {i} {function}"), &robot.call(function, &a), &expected, REFERENCE)

@@ -8,6 +8,7 @@ mod emission;
 mod emitted;
 mod exported_arms;
 mod general_angles;
+mod gravity;
 mod hostile_files;
 mod import_bounds;
 mod kinematics_alone;

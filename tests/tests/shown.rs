@@ -99,6 +99,7 @@ fn check(what: &str, text: &str) {
         dqr: state.dqr,
         ddqr: state.ddqr,
         tau: tau.clone(),
+        ..Arguments::default()
     };
     let g = if program.has("gravity") { program.call("gravity", &a) } else { Vec::new() };
     let vectors: [(&str, &[f64]); 7] =

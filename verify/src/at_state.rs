@@ -85,6 +85,9 @@ fn place(name: &str, arguments: &Arguments<f64>) -> String {
     let of = |argument: &&str| {
         let found = Argument::named(argument)?;
         let numbers: Vec<String> = arguments.of(found).iter().map(f64::to_string).collect();
+        if numbers.is_empty() {
+            return None;
+        }
         Some(format!("{argument} = [{}]", numbers.join(", ")))
     };
     let all: Vec<String> = promise.iter().flat_map(|(promise, _)| promise.arguments).filter_map(of).collect();

@@ -36,7 +36,7 @@ use crate::equations::pose::Pose;
 use crate::equations::state::State;
 use crate::formula::Formula;
 use crate::number::{Erased, Member, Numbers};
-use crate::program::{Program, Step};
+use crate::program::{Argument, Program, Step};
 use crate::reference::{Reference, Values, Wanted, BASE_REGRESSOR};
 
 /// The base parameters of a module: the standard parameters in their names, a flag for combined parameters, and their claimed values.
@@ -147,7 +147,7 @@ pub fn values<K: Arithmetic>(
     let mut values = Reference::at(arithmetic, manipulator, vector, state.clone(), wanted)?.values;
     if let Some(named) = named {
         let arm = Arm::nominal(arithmetic, manipulator).and_then(|names| Arm::new(arithmetic, manipulator, &names));
-        let arm = arm.ok_or("a constant of the description divides by zero")?;
+        let arm = arm.ok_or("a constant of the description divides by zero")?.under(&state.g0);
         values.insert(BASE_REGRESSOR.into(), sums_of_kinds(&arm, &state, named));
     }
     Ok(values)
@@ -195,10 +195,12 @@ impl<E: Element> Samples<E> {
     ) -> Option<Samples<E>> {
         let names = Arm::nominal(arithmetic, manipulator)?;
         let arm = Arm::new(arithmetic, manipulator, &names)?;
-        let mut samples = vec![sample(&arm, reference.state.clone(), named)];
+        let under = |state: State<E>| sample(&arm.clone().under(&state.g0), state, named);
+        let mut samples = vec![under(reference.state.clone())];
         for _ in 0..more {
             let fades = manipulator.joints.iter().map(|joint| joint.stribeck.is_some());
-            samples.push(sample(&arm, State::draw(arithmetic, arm.dof()).with_stribeck(arithmetic, fades), named));
+            let state = State::draw(arithmetic, arm.dof()).with_stribeck(arithmetic, fades);
+            samples.push(under(state.with_gravity(arithmetic, manipulator.gravity_is_argument)));
         }
         Some(Samples(samples))
     }
@@ -388,6 +390,7 @@ pub fn dependent_column<K: Arithmetic>(
         }
         let fades = (0..n).map(|i| program.steps.iter().any(|step| matches!(step, Step::Stribeck(joint, _) if *joint == i)));
         let state = State::draw(&mut arithmetic, n).with_stribeck(&mut arithmetic, fades);
+        let state = state.with_gravity(&mut arithmetic, program.arguments.contains(&Argument::Gravity));
         let Some(entries) = program.run(&state, literals).into_iter().collect::<Option<Vec<_>>>() else { continue };
         entries.chunks(columns).for_each(|row| echelon.add(row.to_vec(), columns));
     }

@@ -16,7 +16,7 @@
 
 use std::collections::BTreeMap;
 
-use armgen_description::kinds::JointKind;
+use armgen_description::kinds::{JointKind, ParameterId};
 use armgen_description::manipulator::Manipulator;
 use armgen_description::parallel::parallel_map;
 
@@ -96,7 +96,23 @@ pub fn domain(manipulator: &Manipulator, nominal: &[f64]) -> Domain {
         }
     };
     domain.pi = nominal.iter().map(around).collect();
+    if manipulator.gravity_is_argument {
+        let size = free_fall(manipulator);
+        domain.g0 = vec![(-size, size); 3];
+    }
     domain
+}
+
+/// The size of the nominal gravity, as far as a mount can turn it; standard gravity (CGPM 1901) where that is 0.
+fn free_fall(manipulator: &Manipulator) -> f64 {
+    let nominal = |id: ParameterId| manipulator.parameters[id.0 as usize].nominal.clone();
+    let coordinates = manipulator.gravity.iter().filter_map(|g| Float::F64.nearest(&formula(&g.evaluate(&nominal))));
+    let size = coordinates.fold(0.0, f64::hypot);
+    if size > 0.0 {
+        size
+    } else {
+        9.80665
+    }
 }
 
 /// A box with all angles, prismatic joints as far to one side as to the other, and parameters that are 0 in the description hardly more.
@@ -133,6 +149,7 @@ pub fn draw(domain: &Domain, stream: &mut Stream, real: Float) -> Arguments<f64>
         ddqr: all(&domain.ddqr),
         tau: all(&domain.tau),
         pi: all(&domain.pi),
+        g0: all(&domain.g0),
     }
 }
 
@@ -243,6 +260,10 @@ const BOX: [&str; 3] = [
     "NOMINAL_PARAMETERS; arguments exact, sines and cosines within one unit in the last place.",
 ];
 
+/// What follows it where gravity is an argument.
+const BOX_OF_GRAVITY: &str =
+    "Coordinates of g0 within the size of NOMINAL_GRAVITY to either side (9.80665 m/s^2 where that is 0).";
+
 /// What the documentation of a function says of its bound.
 fn sentence(bound: &Bound) -> String {
     let size = bound.largest();
@@ -285,10 +306,10 @@ pub struct Notes {
     pub functions: BTreeMap<String, String>,
 }
 
-/// The error bounds of functions in words.
-pub fn notes(bounds: &BTreeMap<String, Bound>) -> Notes {
+/// The error bounds of the functions of a module in words; `gravity`: whether the acceleration of free fall is an argument.
+pub fn notes(bounds: &BTreeMap<String, Bound>, gravity: bool) -> Notes {
     Notes {
-        head: BOX.map(String::from).to_vec(),
+        head: BOX.into_iter().chain(gravity.then_some(BOX_OF_GRAVITY)).map(String::from).collect(),
         functions: bounds.iter().map(|(name, bound)| (name.clone(), sentence(bound))).collect(),
     }
 }

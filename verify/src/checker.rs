@@ -171,7 +171,8 @@ fn sizes(manipulator: &Manipulator, vector: &Vector, base: Option<&OwnParameters
         Vector::Base(base, _) => base.len(),
     };
     let base = base.map_or(0, |base| base.named.len());
-    Sizes { n: manipulator.joints.len(), p: parameters, b: base, m: manipulator.task.len() }
+    let gravity = manipulator.gravity_is_argument;
+    Sizes { n: manipulator.joints.len(), p: parameters, b: base, m: manipulator.task.len(), gravity }
 }
 
 /// The program of a function that takes and gives what its name promises; else what is wrong.
@@ -187,7 +188,7 @@ fn fitting<'a>(
     if program.outputs.iter().map(|o| &o.place).ne(&places) && Check::Places.is_made() {
         return Err(format!("its result does not have the {} entries that it should", places.len()));
     }
-    match beyond_the_end(program, sizes.n, sizes.p) {
+    match beyond_the_end(program, sizes) {
         Some(why) if Check::Indices.is_made() => return Err(why),
         _ => {}
     }
@@ -634,9 +635,10 @@ fn refused(name: &str, why: String) -> FunctionReport {
 }
 
 /// An index that its argument does not have: the reader knows arguments by name only.
-fn beyond_the_end(program: &Program, n: usize, p: usize) -> Option<String> {
+fn beyond_the_end(program: &Program, sizes: &Sizes) -> Option<String> {
+    let n = sizes.n;
     program.steps.iter().find_map(|step| match step {
-        Step::Input(argument, index) if *index >= Promise::length(*argument, n, p) => {
+        Step::Input(argument, index) if *index >= argument.length().of(sizes) => {
             Some(format!("index {index} is beyond the end of its argument"))
         }
         Step::Sign(joint) | Step::Stribeck(joint, _) if *joint >= n => Some(format!("index {joint} is beyond the end of `dq`")),

@@ -21,13 +21,13 @@
 use std::fmt::Write;
 
 use crate::claims::Claims;
-use crate::contract::{Promise, Sizes};
+use crate::contract::Promise;
 use crate::enclosure::Float;
 use crate::float::{Arguments, LANES};
-use crate::marked::{marked, FUSED, LOAD, STRIBECK};
+use crate::marked::{marked, FUSED, GRAVITY, LOAD, STRIBECK};
 use crate::program::{Angle, Argument, Program, Step};
 use crate::ranges::{is_power_of_two, literal_errors};
-use crate::reader::{Constant, Module};
+use crate::reader::Module;
 
 /// The text taken in, as a module of this crate in each scalar: the same lines that companions have.
 macro_rules! face {
@@ -63,6 +63,7 @@ macro_rules! face {
                     dqr: &single.dqr,
                     ddqr: &single.ddqr,
                     tau: &single.tau,
+                    g0: &single.g0,
                 };
                 let steps: Vec<Step> = steps.iter().map(step).collect();
                 let mut values = vec![NOTHING; steps.len()];
@@ -93,6 +94,7 @@ macro_rules! face {
                     Argument::Dqr => Name::Dqr,
                     Argument::Ddqr => Name::Ddqr,
                     Argument::Tau => Name::Tau,
+                    Argument::Gravity => Name::Gravity,
                 }
             }
 
@@ -313,10 +315,10 @@ pub fn companion(module: &Module, claims: &Claims, import: &str) -> Result<Strin
     );
     for (name, function) in &module.functions {
         let program = &function.as_ref().map_err(|e| format!("`{name}`: {e}"))?.program;
-        let (promise, with) = Promise::of(name).ok_or(format!("`{name}` is not known"))?;
+        let (promise, _) = Promise::of(name).ok_or(format!("`{name}` is not known"))?;
         let values = claims.resolve(name, &program.literals, module.real).values;
         let table = Table::of(program, &literal_errors(program, &values, module.real), module.real)?;
-        write_function(&mut text, program, &table, promise, with, module);
+        write_function(&mut text, program, &table, promise, module);
     }
     let _ =
         write!(text, "/// Sine and cosine of an angle in rad.\nfn sin_cos(x: Real) -> (Real, Real) {{\n    {sincos}(x)\n}}\n\n");
@@ -330,7 +332,10 @@ pub fn companion(module: &Module, claims: &Claims, import: &str) -> Result<Strin
     ];
     parts.iter().filter(|(_, wanted)| *wanted).for_each(|(part, _)| text += &format!("{part}\n"));
     let template = include_str!("companion/template.rs").split_once("// BEGIN\n").map_or("", |(_, rest)| rest);
-    text += &marked(template, "//", &[(STRIBECK, fades), (LOAD, loaded), (FUSED, fused)]);
+    let gravity = module.sizes().gravity;
+    let template = marked(template, "//", &[(STRIBECK, fades), (LOAD, loaded), (FUSED, fused), (GRAVITY, gravity)]);
+    // The one field within a line.
+    text += &if gravity { template } else { template.replace(", g0: &[] }", " }") };
     Ok(text)
 }
 
@@ -356,18 +361,6 @@ pub fn of_inverse_kinematics(module: &Module) -> String {
     include_str!("companion/inverse_kinematics.rs.txt").replace("{root}", root)
 }
 
-fn argument(argument: Argument) -> &'static str {
-    match argument {
-        Argument::Pi => "pi",
-        Argument::Q => "q",
-        Argument::Dq => "dq",
-        Argument::Ddq => "ddq",
-        Argument::Dqr => "dqr",
-        Argument::Ddqr => "ddqr",
-        Argument::Tau => "tau",
-    }
-}
-
 fn number(value: f64, real: Float) -> String {
     match real {
         Float::F64 => format!("{value:?}"),
@@ -383,17 +376,11 @@ fn row_text(row: &Row, real: Float) -> String {
     }
 }
 
-fn write_function(text: &mut String, program: &Program, table: &Table, promise: &Promise, with: bool, module: &Module) {
-    let mut arguments: Vec<String> = promise.arguments.iter().map(|a| format!("{a}: &[Real; DOF]")).collect();
-    if with {
-        arguments.insert(0, "pi: &[Real; PARAMETERS]".into());
-    }
-    let given: Vec<&str> = program.arguments.iter().map(|a| argument(*a)).collect();
-    let constant = |name: &str| match module.constants.get(name) {
-        Some(Constant::Integer(value)) => *value as usize,
-        _ => 0,
-    };
-    let sizes = Sizes { n: constant("DOF"), p: constant("PARAMETERS"), b: constant("BASE_PARAMETERS"), m: constant("TASK_ROWS") };
+fn write_function(text: &mut String, program: &Program, table: &Table, promise: &Promise, module: &Module) {
+    let typed = |a: &Argument| format!("{}: &[Real; {}]", a.name(), a.length().rust());
+    let arguments: Vec<String> = program.arguments.iter().map(typed).collect();
+    let given: Vec<&str> = program.arguments.iter().map(|a| a.name()).collect();
+    let sizes = module.sizes();
     let angle = |sum: &Sum| {
         let terms: Vec<String> = sum.terms.iter().map(|(joint, factor)| format!("({joint}, {factor}.0)")).collect();
         let [turn, off] = [sum.turn, sum.off].map(|value| number(value, module.real));

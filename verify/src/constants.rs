@@ -1,6 +1,6 @@
 //! Compares the constants of a module with the description.
 
-use armgen_description::kinds::JointKind;
+use armgen_description::kinds::{JointKind, ParameterId};
 use armgen_description::manipulator::Manipulator;
 
 use crate::arithmetic::prime::Residue;
@@ -13,7 +13,7 @@ use crate::enclosure::Float;
 use crate::equations::arm::{formula, Arm};
 use crate::equations::parameters::{self, Standard, Vector};
 use crate::formula::Formula;
-use crate::program::Literal;
+use crate::program::{Literal, NOMINAL_GRAVITY};
 use crate::reader::{Constant, Module};
 use crate::report::{ConstantReport, Exact, Verdict};
 
@@ -193,6 +193,11 @@ fn expected(checker: &Checker, module: &Module, nominal: &[Formula], names: &[St
         ("PARAMETER_NAMES", texts(parameter_names)),
         ("NOMINAL_PARAMETERS", array(nominal.iter().cloned().map(Expected::Number).collect())),
     ];
+    if manipulator.gravity_is_argument {
+        let nominal = |id: ParameterId| manipulator.parameters[id.0 as usize].nominal.clone();
+        let gravity = manipulator.gravity.iter().map(|g| Expected::Number(formula(&g.evaluate(&nominal))));
+        all.push((NOMINAL_GRAVITY, array(gravity.collect())));
+    }
     if let Some(names) = base_names(module) {
         let nominal = claimed("NOMINAL_BASE_PARAMETERS", names.len(), checker.claims(), module).unwrap_or_default();
         let nominal = nominal.into_iter().map(Expected::Number).collect();

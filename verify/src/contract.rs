@@ -17,6 +17,17 @@ pub enum Length {
     Of(usize),
 }
 
+impl Argument {
+    /// Its number of entries.
+    pub fn length(self) -> Length {
+        match self {
+            Argument::Pi => Length::Parameters,
+            Argument::Gravity => Length::Of(3),
+            _ => Length::Dof,
+        }
+    }
+}
+
 /// The sizes of an arm.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Sizes {
@@ -28,6 +39,8 @@ pub struct Sizes {
     pub b: usize,
     /// Rows of the task.
     pub m: usize,
+    /// Whether the acceleration of free fall is an argument.
+    pub gravity: bool,
 }
 
 impl Length {
@@ -71,7 +84,7 @@ pub enum Returned {
 pub struct Promise {
     /// Its name.
     pub name: &'static str,
-    /// Its arguments.
+    /// Its arguments; `g0` of modules alone that have the acceleration of free fall as an argument.
     pub arguments: &'static [&'static str],
     /// Its result.
     pub returned: Returned,
@@ -165,15 +178,11 @@ impl Returned {
 }
 
 impl Promise {
-    /// The Rust signature, without blanks.
-    pub fn signature(&self, with_parameters: bool) -> String {
-        format!("({})->{}", self.typed(with_parameters).join(","), self.returned.rust())
-    }
-
-    /// The arguments with their Rust types, without blanks.
-    pub(crate) fn typed(&self, with_parameters: bool) -> Vec<String> {
-        let own = self.arguments.iter().map(|name| format!("{name}:&[Real;DOF]"));
-        with_parameters.then(|| "pi:&[Real;PARAMETERS]".into()).into_iter().chain(own).collect()
+    /// The arguments of the function of a module, in order; `gravity`: whether the acceleration of free fall is an argument there.
+    pub fn arguments_of(&self, with_parameters: bool, gravity: bool) -> Vec<Argument> {
+        let own = self.arguments.iter().copied().filter_map(Argument::named);
+        let own = own.filter(|argument| *argument != Argument::Gravity || gravity);
+        with_parameters.then_some(Argument::Pi).into_iter().chain(own).collect()
     }
 
     /// Names and Rust types, without blanks, of the output arguments of the function that writes the result into memory of the caller; a number
@@ -190,21 +199,17 @@ impl Promise {
     }
 
     /// The Rust body of a function that calls the writing function, without the final `result`.
-    pub(crate) fn calls_written(&self, with_parameters: bool, written: &str) -> String {
+    pub(crate) fn calls_written(&self, arguments: &[Argument], written: &str) -> String {
         let zeros = self.returned.arrays().into_iter().map(|(_, lengths)| of_entries(lengths, "0.0"));
         let value = self.returned.value_of(zeros.collect());
-        let arguments = with_parameters.then_some("pi").into_iter().chain(self.arguments.iter().copied()).map(String::from);
+        let arguments = arguments.iter().map(|argument| argument.name().to_string());
         let results = self.returned.accesses().into_iter().map(|access| format!("&mut result{access}"));
         let all: Vec<String> = arguments.chain(results).collect();
         format!("let mut result = {value}; {written}({});", all.join(", "))
     }
 
-    /// Length of an argument.
-    pub fn length(argument: Argument, n: usize, p: usize) -> usize {
-        if argument == Argument::Pi {
-            p
-        } else {
-            n
-        }
+    /// Arguments with their Rust types, without blanks.
+    pub(crate) fn typed(arguments: &[Argument]) -> Vec<String> {
+        arguments.iter().map(|argument| format!("{}:&[Real;{}]", argument.name(), argument.length().rust())).collect()
     }
 }

@@ -24,6 +24,8 @@ pub struct Arguments<T> {
     pub ddqr: Vec<T>,
     /// Joint torques.
     pub tau: Vec<T>,
+    /// Acceleration of free fall; empty where that is no argument.
+    pub g0: Vec<T>,
 }
 
 impl<T: Copy> Arguments<T> {
@@ -37,6 +39,7 @@ impl<T: Copy> Arguments<T> {
             Argument::Dqr => &self.dqr,
             Argument::Ddqr => &self.ddqr,
             Argument::Tau => &self.tau,
+            Argument::Gravity => &self.g0,
         }
     }
 
@@ -70,6 +73,7 @@ impl<T> Arguments<T> {
             dqr: of(Argument::Dqr),
             ddqr: of(Argument::Ddqr),
             tau: of(Argument::Tau),
+            g0: of(Argument::Gravity),
         }
     }
 }

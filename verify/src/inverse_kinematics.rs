@@ -570,6 +570,7 @@ fn misses(arm: &Arm<f64>, outcome: &run::Outcome, pose: &[[f64; 4]; 3], first: u
             dqr: zeros.clone(),
             ddqr: zeros.clone(),
             tau: zeros.clone(),
+            g0: Vec::new(),
         };
         let angles = joints.iter().map(|[c, s]| (*s, *c)).collect();
         let tool = Pose::new(arm, &State::of(arguments, angles, zeros, [0.0, 1.0])).tool;

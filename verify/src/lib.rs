@@ -110,6 +110,7 @@ use claims::Claims;
 use enclosure::Float;
 use equations::parameters::Vector;
 use formula::Formula;
+use program::NOMINAL_GRAVITY;
 use reader::{Constant, Module, ModuleText};
 use report::{Report, Verdict};
 use rounding::Trial;
@@ -139,6 +140,11 @@ pub fn prepare<'a>(
         if *name != manipulator.name && Check::Robot.is_made() {
             return Err(format!("NAME: the module is of the robot `{name}`, the description of `{}`", manipulator.name));
         }
+    }
+    match (module.sizes().gravity, manipulator.gravity_is_argument) {
+        (true, false) => return Err(format!("{NOMINAL_GRAVITY}: gravity is no argument in the description")),
+        (false, true) => return Err(format!("{NOMINAL_GRAVITY} is missing: gravity is an argument in the description")),
+        _ => {}
     }
     let vector = Vector::of(&manipulator, &constants::parameter_names(&module))?;
     let claims = claims.used(&module, &constants::claimed_constants(&vector, &module));

@@ -5,6 +5,9 @@ use std::fmt;
 use crate::element::Element;
 use crate::formula::Formula;
 
+/// The constant of modules that have the acceleration of free fall as an argument.
+pub const NOMINAL_GRAVITY: &str = "NOMINAL_GRAVITY";
+
 /// Arguments of emitted functions.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum Argument {
@@ -22,12 +25,14 @@ pub enum Argument {
     Ddqr,
     /// Joint torques.
     Tau,
+    /// Acceleration of free fall in the base frame. Last, because the seed of the random points has the numbers of the others.
+    Gravity,
 }
 
 impl Argument {
     /// All arguments.
-    pub const ALL: [Argument; 7] =
-        [Argument::Pi, Argument::Q, Argument::Dq, Argument::Ddq, Argument::Dqr, Argument::Ddqr, Argument::Tau];
+    pub const ALL: [Argument; 8] =
+        [Argument::Pi, Argument::Q, Argument::Dq, Argument::Ddq, Argument::Dqr, Argument::Ddqr, Argument::Tau, Argument::Gravity];
 
     /// Its name.
     pub fn name(self) -> &'static str {
@@ -39,6 +44,7 @@ impl Argument {
             Argument::Dqr => "dqr",
             Argument::Ddqr => "ddqr",
             Argument::Tau => "tau",
+            Argument::Gravity => "g0",
         }
     }
 
@@ -52,6 +58,7 @@ impl Argument {
             "dqr" => Argument::Dqr,
             "ddqr" => Argument::Ddqr,
             "tau" => Argument::Tau,
+            "g0" => Argument::Gravity,
             _ => return None,
         })
     }

@@ -26,7 +26,7 @@ use armgen_description::language::Language;
 use crate::check::{parallel_map, Check};
 use crate::contract::Sizes;
 use crate::enclosure::Float;
-use crate::program::Program;
+use crate::program::{Program, NOMINAL_GRAVITY};
 use body::Shared;
 pub(crate) use c::in_the_name_of;
 pub use constant::Constant;
@@ -198,7 +198,8 @@ impl Module {
             Some(Constant::Integer(value)) => *value as usize,
             _ => 0,
         };
-        Sizes { n: of("DOF"), p: of("PARAMETERS"), b: of("BASE_PARAMETERS"), m: of("TASK_ROWS") }
+        let gravity = self.constants.contains_key(NOMINAL_GRAVITY);
+        Sizes { n: of("DOF"), p: of("PARAMETERS"), b: of("BASE_PARAMETERS"), m: of("TASK_ROWS"), gravity }
     }
 
     /// The programs of all readable functions, by name.

@@ -55,28 +55,28 @@ pub const PROMISES: [Promise; 24] = [
     promise("link_jacobians", &["q"], Returned::One(&[N, Length::Of(6), N])),
     promise("inertia_matrix", &["q"], Returned::One(SQUARE)).with_parameters(),
     promise("coriolis_matrix", &["q", "dq"], Returned::One(SQUARE)).with_parameters(),
-    promise("gravity", &["q"], Returned::One(VECTOR)).with_parameters(),
+    promise("gravity", &["g0", "q"], Returned::One(VECTOR)).with_parameters(),
     promise("friction", &["dq"], Returned::One(VECTOR)).with_parameters(),
-    promise("load_friction", &["q", "dq"], Returned::One(VECTOR)).with_parameters().not_of_every_arm(),
+    promise("load_friction", &["g0", "q", "dq"], Returned::One(VECTOR)).with_parameters().not_of_every_arm(),
     promise(
         "equations_of_motion",
-        &["q", "dq"],
+        &["g0", "q", "dq"],
         Returned::Fields("EquationsOfMotion", &[("inertia", SQUARE), ("coriolis", SQUARE), ("gravity", VECTOR)]),
     )
     .with_parameters(),
-    promise("inverse_dynamics", &["q", "dq", "ddq"], Returned::One(VECTOR)).with_parameters(),
-    promise("forward_dynamics", &["q", "dq", "tau"], Returned::One(VECTOR)).with_parameters(),
-    promise("regressor", &["q", "dq", "dqr", "ddqr"], Returned::One(&[N, Length::Parameters])),
-    promise("known_torque", &["q", "dq", "dqr", "ddqr"], Returned::One(VECTOR)),
+    promise("inverse_dynamics", &["g0", "q", "dq", "ddq"], Returned::One(VECTOR)).with_parameters(),
+    promise("forward_dynamics", &["g0", "q", "dq", "tau"], Returned::One(VECTOR)).with_parameters(),
+    promise("regressor", &["g0", "q", "dq", "dqr", "ddqr"], Returned::One(&[N, Length::Parameters])),
+    promise("known_torque", &["g0", "q", "dq", "dqr", "ddqr"], Returned::One(VECTOR)),
     promise("kinetic_energy", &["q", "dq"], Returned::One(&[])).with_parameters(),
-    promise("potential_energy", &["q"], Returned::One(&[])).with_parameters(),
+    promise("potential_energy", &["g0", "q"], Returned::One(&[])).with_parameters(),
     promise("center_of_mass", &["q"], Returned::One(&[Length::Of(3)])).with_parameters().not_of_every_arm(),
     promise("momentum", &["q", "dq"], Returned::One(VECTOR)),
     promise("coriolis_transpose_times", &["q", "dq"], Returned::One(VECTOR)),
-    promise(BASE_REGRESSOR, &["q", "dq", "ddq"], Returned::One(&[N, Length::BaseParameters])),
+    promise(BASE_REGRESSOR, &["g0", "q", "dq", "ddq"], Returned::One(&[N, Length::BaseParameters])),
     promise("operational_inertia", &["q"], Returned::One(&[Length::Task, Length::Task])).not_of_every_arm(),
-    promise("inverse_dynamics_derivatives", &["q", "dq", "ddq"], Returned::List(&[SQUARE, SQUARE])),
-    promise("forward_dynamics_derivatives", &["q", "dq", "tau"], Returned::List(&[SQUARE, SQUARE, SQUARE])),
+    promise("inverse_dynamics_derivatives", &["g0", "q", "dq", "ddq"], Returned::List(&[SQUARE, SQUARE])),
+    promise("forward_dynamics_derivatives", &["g0", "q", "dq", "tau"], Returned::List(&[SQUARE, SQUARE, SQUARE])),
 ];
 
 impl Promise {
@@ -337,6 +337,7 @@ impl<E: Element> Reference<E> {
     ) -> Result<Reference<E>, String> {
         let fades = manipulator.joints.iter().map(|joint| joint.stribeck.is_some());
         let state = State::draw(arithmetic, manipulator.joints.len()).with_stribeck(arithmetic, fades);
+        let state = state.with_gravity(arithmetic, manipulator.gravity_is_argument);
         Reference::at(arithmetic, manipulator, vector, state, wanted)
     }
 
@@ -349,7 +350,7 @@ impl<E: Element> Reference<E> {
         wanted: Wanted,
     ) -> Result<Reference<E>, String> {
         let nominal_values = Arm::nominal(arithmetic, manipulator).ok_or_else(divided)?;
-        let arm = Arm::new(arithmetic, manipulator, &nominal_values).ok_or_else(divided)?;
+        let arm = Arm::new(arithmetic, manipulator, &nominal_values).ok_or_else(divided)?.under(&state.g0);
         let n = arm.dof();
         state.stribeck_velocities = arm.joints.iter().map(|joint| joint.stribeck_velocity.clone()).collect();
         let mut values = Values::new();
@@ -381,7 +382,8 @@ impl<E: Element> Reference<E> {
         }
         let pivots = wanted.pivots.then(|| {
             let (other, pi) = other.unzip();
-            let there = State { pi: pi.unwrap_or_default(), ..State::draw(arithmetic, n) };
+            let drawn = State::draw(arithmetic, n).with_gravity(arithmetic, manipulator.gravity_is_argument);
+            let there = State { pi: pi.unwrap_or_default(), ..drawn };
             let at = |run_time: Option<&Arm<E>>, state: &State<E>| pivots(&arm, run_time, state, &task);
             (at(run_time.as_ref(), &state), there.clone(), at(other.as_ref(), &there))
         });
@@ -431,10 +433,11 @@ fn of_names<E: Element, K: Arithmetic<Element = E>>(
         state.pi = draws(arithmetic, ids.len());
     }
     let other = wanted.pivots.then(|| draws(arithmetic, ids.len()));
-    let at = |pi: &[E]| {
+    let gravity = state.g0.clone();
+    let at = |pi: &[E]| -> Result<Arm<E>, String> {
         let mut names = names.to_vec();
         ids.iter().zip(pi).for_each(|(&id, value)| names[id] = value.clone());
-        Arm::new(arithmetic, manipulator, &names).ok_or_else(divided)
+        Ok(Arm::new(arithmetic, manipulator, &names).ok_or_else(divided)?.under(&gravity))
     };
     let zero = vec![arm.zero.clone(); ids.len()];
     let known = reference_torques(&at(&zero)?, state);
@@ -493,6 +496,8 @@ fn of_base<E: Element, K: Arithmetic<Element = E>>(
     let elsewhere = |arithmetic: &mut K, state: &State<E>, energy: &dyn Fn(&State<E>) -> E| {
         let mut there = State::draw(arithmetic, arm.dof());
         there.pi.clone_from(&state.pi);
+        // The constant of the energy is one for each gravity.
+        there.g0.clone_from(&state.g0);
         let energy = energy(&there);
         Some((there, energy))
     };
@@ -506,7 +511,7 @@ fn of_base<E: Element, K: Arithmetic<Element = E>>(
     }
     let phi = draws(arithmetic, all.len());
     state.pi = if wanted.base == BaseParameters::Solved {
-        let map = base_map(arithmetic, arm, &kept, all)?;
+        let map = base_map(arithmetic, arm, &kept, all, !state.g0.is_empty())?;
         check_names(&map, base, all, arm)?;
         let standard: Vec<E> = all.iter().map(|parameter| parameter.value(arm)).collect();
         linear.nominal = Some(times_vector(&map, &standard));

@@ -76,9 +76,9 @@ impl Sort {
             }
             Sort::Slow => {
                 let factor = if lane.is_multiple_of(2) { 0.0 } else { 2f64.powi(-10) };
-                let Arguments { q, tau, pi, .. } = draw(domain, stream, real);
+                let Arguments { q, tau, pi, g0, .. } = draw(domain, stream, real);
                 let slow = draw(domain, stream, real).map(|rate| factor * rate);
-                Arguments { q, tau, pi, ..slow }
+                Arguments { q, tau, pi, g0, ..slow }
             }
         }
     }

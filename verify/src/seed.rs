@@ -148,10 +148,24 @@ fn of_program(program: &Program, resolved: &Resolved) -> Hash {
 /// The numbers of a description and their structure.
 fn of_description(manipulator: &Manipulator) -> Hash {
     let mut arm = Description(Parts::of("description"));
-    let Manipulator { name: _, parameters, gravity, joints, tip, tool, payload, task, regressor, inverse_kinematics: _ } =
-        manipulator;
+    let Manipulator {
+        name: _,
+        parameters,
+        gravity,
+        gravity_is_argument,
+        joints,
+        tip,
+        tool,
+        payload,
+        task,
+        regressor,
+        inverse_kinematics: _,
+    } = manipulator;
     parameters.iter().for_each(|parameter| arm.number(&parameter.nominal));
     arm.polynomials(gravity);
+    if *gravity_is_argument {
+        arm.word("argument");
+    }
     for joint in joints {
         arm.word(&format!("{:?} {:?}", joint.kind, joint.parent));
         arm.row(joint);

@@ -18,7 +18,7 @@ const DIGITS: usize = 16;
 pub fn faults(module: &Module, report: &Report) -> Vec<String> {
     let known: BTreeMap<String, Bound> =
         report.functions.iter().filter_map(|f| Some((f.name.clone(), f.bound.clone()?))).collect();
-    let notes = bounds::notes(&known);
+    let notes = bounds::notes(&known, module.sizes().gravity);
     let of_head = |fault: String| vec![format!("the head of the file: {fault}")];
     let lines: Vec<&str> = module.head.iter().map(|line| line.strip_prefix(' ').unwrap_or(line)).collect();
     if let Err(fault) = origin(lines.first().unwrap_or(&""), &report.input) {

@@ -21,10 +21,10 @@ use crate::equations::parameters::Vector;
 use crate::equations::state::State;
 use crate::float::Arguments;
 use crate::formula::Formula;
-use crate::marked::{marked, LOAD};
-use crate::program::Inputs;
+use crate::marked::{marked, GRAVITY, LOAD};
+use crate::program::{Argument, Inputs};
 use crate::reader::Module;
-use crate::reference::{BaseParameters, Wanted};
+use crate::reference::{BaseParameters, Wanted, PROMISES};
 use crate::stream::Stream;
 
 /// Float arithmetic with 256 bits.
@@ -52,7 +52,8 @@ fn uniform(stream: &mut Stream, low: f64, high: f64) -> f64 {
 const STATES: usize = 3;
 
 /// Random arguments of typical size.
-fn arguments(stream: &mut Stream, n: usize, p: usize) -> Arguments<f64> {
+fn arguments(stream: &mut Stream, sizes: &Sizes) -> Arguments<f64> {
+    let (n, p) = (sizes.n, sizes.p);
     let mut many = |count: usize, low: f64, high: f64| (0..count).map(|_| uniform(stream, low, high)).collect();
     Arguments {
         q: many(n, -3.0, 3.0),
@@ -62,6 +63,7 @@ fn arguments(stream: &mut Stream, n: usize, p: usize) -> Arguments<f64> {
         ddqr: many(n, -4.0, 4.0),
         tau: many(n, -20.0, 20.0),
         pi: many(p, 0.5, 2.0),
+        g0: if sizes.gravity { many(3, -10.0, 10.0) } else { Vec::new() },
     }
 }
 
@@ -124,7 +126,7 @@ impl Kit {
         let (states, values, loaded) = (Vec::new(), Vec::new(), present("load_friction"));
         let mut kit = Kit { robot: manipulator.name.clone(), real: module.real, sizes, states, values, loaded };
         for index in 0..STATES {
-            let arguments = arguments(&mut stream, manipulator.joints.len(), sizes.p);
+            let arguments = arguments(&mut stream, &sizes);
             let state = wide_state(&arguments, manipulator).ok_or("a joint variable out of reach")?;
             let wanted = Wanted { base: BaseParameters::LeftOut, pivots: false };
             let equations = base::values_in_numbers(&mut fine, manipulator, &vector, None, state, wanted)?;
@@ -139,6 +141,35 @@ impl Kit {
             kit.states.push(arguments);
         }
         Ok(kit)
+    }
+}
+
+impl Kit {
+    /// The template, which has calls without the acceleration of free fall, with this one where it is an argument; `call` is what a call
+    /// begins with.
+    fn with_gravity(&self, mut template: String, call: &dyn Fn(&str) -> String, gravity: &str) -> String {
+        let takes_it = |promise: &&Promise| self.sizes.gravity && promise.arguments.contains(&Argument::Gravity.name());
+        for promise in PROMISES.iter().filter(takes_it) {
+            for (name, with) in [(promise.name.to_string(), false), (format!("{}_with", promise.name), true)] {
+                let call = call(&name);
+                let mut rest = std::mem::take(&mut template);
+                while let Some(at) = rest.find(&call) {
+                    let inside = rest[..at].ends_with(|c: char| c.is_alphanumeric() || c == '_');
+                    let mut end = at + call.len();
+                    if with {
+                        // Behind the parameters.
+                        end += rest[end..].find(", ").map_or(0, |comma| comma + 2);
+                    }
+                    template += &rest[..end];
+                    if !inside {
+                        template += &format!("{gravity}, ");
+                    }
+                    rest.drain(..end);
+                }
+                template += &rest;
+            }
+        }
+        template
     }
 }
 
@@ -157,9 +188,10 @@ pub fn test_kit(manipulator: &Manipulator, module: &Module, import: &str, origin
         text,
         "/// States at which values are known.\n#[rustfmt::skip]\nconst STATES: [Arguments; {STATES}] = [\n{}];\n",
         kit.states.iter().fold(String::new(), |mut states, arguments| {
+            let gravity = if kit.sizes.gravity { format!(", g0: [{}]", write(&arguments.g0)) } else { String::new() };
             let _ = writeln!(
                 states,
-                "    Arguments {{ q: [{}], dq: [{}], ddq: [{}], dqr: [{}], ddqr: [{}], tau: [{}], pi: [{}] }},",
+                "    Arguments {{ q: [{}], dq: [{}], ddq: [{}], dqr: [{}], ddqr: [{}], tau: [{}], pi: [{}]{gravity} }},",
                 write(&arguments.q),
                 write(&arguments.dq),
                 write(&arguments.ddq),
@@ -173,10 +205,8 @@ pub fn test_kit(manipulator: &Manipulator, module: &Module, import: &str, origin
     );
     let mut values = String::new();
     for Value { name, promise, with, state, entries } in &kit.values {
-        let mut call: Vec<String> = promise.arguments.iter().map(|a| format!("&STATES[{state}].{a}")).collect();
-        if *with {
-            call.insert(0, format!("&STATES[{state}].pi"));
-        }
+        let arguments = promise.arguments_of(*with, kit.sizes.gravity);
+        let call: Vec<String> = arguments.iter().map(|a| format!("&STATES[{state}].{}", a.name())).collect();
         let _ = writeln!(
             values,
             "        (\"{name}\", {state}, robot::{name}({}).flat(), vec![{}]),",
@@ -190,7 +220,8 @@ pub fn test_kit(manipulator: &Manipulator, module: &Module, import: &str, origin
          fn values() -> Vec<(&'static str, usize, Vec<Real>, Vec<Real>)> {{\n    vec![\n{values}    ]\n}}\n"
     );
     let template = include_str!("test_kit/template.rs").split_once("// BEGIN\n").map_or("", |(_, rest)| rest);
-    text += &marked(template, "//", &[(LOAD, kit.loaded)]);
+    let template = marked(template, "//", &[(LOAD, kit.loaded), (GRAVITY, kit.sizes.gravity)]);
+    text += &kit.with_gravity(template, &|name| format!("{name}("), "&FREE_FALL");
     Ok(text)
 }
 

@@ -134,7 +134,7 @@ fn bounds_are_rounded_up_and_stand_in_the_documentation() {
     }
     let mut generated = common::generate(&common::source("scara"), Scalar::F64);
     let (_, module, claims, manipulator) = robot("scara", Scalar::F64);
-    let bounds = notes(&of(&manipulator, &module, &claims));
+    let bounds = notes(&of(&manipulator, &module, &claims), false);
     generated.annotate(&Notes { head: bounds.head, functions: bounds.functions });
     let documented = generated.module;
     let stated = documented.lines().filter(|line| line.starts_with("/// Rounding error: ")).count();
@@ -304,7 +304,7 @@ fn accelerations_solve_the_equations_within_a_bound() {
             assert!(bound.residual.is_some() || bound.largest().is_finite(), "{name} {function}");
         }
         if bounds["forward_dynamics"].residual.is_some() {
-            let note = &notes(&bounds).functions["forward_dynamics"];
+            let note = &notes(&bounds, module.sizes().gravity).functions["forward_dynamics"];
             assert!(note.starts_with("Rounding error: ddq is that of torques off by at most "), "{name}");
         }
     }

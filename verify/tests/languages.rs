@@ -290,3 +290,14 @@ fn one_joint_and_thirty_two_have_the_bits_of_rust() {
     let functions = ["link_frames", "gravity", "inertia_matrix", "inverse_dynamics", "forward_dynamics"];
     run::check_with("chain_32", &chain(32), &some(&functions), 1_000, run::Effort::Short);
 }
+
+#[test]
+#[ignore = "wide"]
+fn functions_with_gravity_as_an_argument_have_the_bits_of_rust() {
+    let source = Source::new("mounted.yaml", include_str!("../../tests/data/mounted.yaml"));
+    for scalar in [Scalar::F64, Scalar::F32] {
+        #[allow(clippy::needless_update)]
+        let options = Options { scalar, trig: Trig::Fast, ..Options::default() };
+        run::check_with("mounted", &source, &options, 200, run::Effort::Short);
+    }
+}

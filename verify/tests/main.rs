@@ -7,6 +7,7 @@ mod certificate_page;
 mod common;
 mod contract;
 mod floats;
+mod gravity;
 mod hostile_modules;
 mod languages;
 mod mutations;

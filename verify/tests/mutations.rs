@@ -36,7 +36,7 @@ fn arguments(stream: &mut Stream, n: usize, p: usize) -> Arguments<f64> {
     };
     let pi = many(p, 0.1, 3.0);
     let [q, dq, ddq, dqr, ddqr, tau] = [3.0, 2.0, 5.0, 2.0, 5.0, 20.0].map(|size| many(n, -size, size));
-    Arguments { pi, q, dq, ddq, dqr, ddqr, tau }
+    Arguments { pi, q, dq, ddq, dqr, ddqr, tau, g0: many(3, -10.0, 10.0) }
 }
 
 /// Entries whose bits differ at some state.

@@ -6,6 +6,7 @@ use std::path::{Path, PathBuf};
 use std::process::Command;
 
 use armgen_codegen::kinds::Scalar;
+use armgen_codegen::source::Source;
 use armgen_verify::test_kit;
 
 /// A user's project: the module next to its crate root, the test file in `tests`.
@@ -37,12 +38,15 @@ fn run(folder: &Path) -> (bool, String) {
 }
 
 fn check(name: &str, scalar: Scalar) {
-    let source = common::source(name);
-    let module = common::generate(&source, scalar).module;
+    check_source(name, &common::source(name), scalar);
+}
+
+fn check_source(name: &str, source: &Source, scalar: Scalar) {
+    let module = common::generate(source, scalar).module;
     let word = format!("{scalar:?}").to_lowercase();
     let crate_name = format!("{}-{word}", name.replace('_', "-"));
     let import = format!("use user_{}::robot;", crate_name.replace('-', "_"));
-    let tests = test_kit(&source, &module, &import).expect("a test file");
+    let tests = test_kit(source, &module, &import).expect("a test file");
     let (passed, text) = run(&project(&crate_name, &module, &tests));
     assert!(passed, "{name} {scalar:?}:\n{text}");
 }
@@ -55,6 +59,8 @@ fn the_test_file_passes_in_a_project_of_its_own() {
     }
     check("scara", Scalar::F32);
     check("panda7", Scalar::F32);
+    let mounted = Source::new("mounted.yaml", include_str!("../../tests/data/mounted.yaml"));
+    check_source("mounted", &mounted, Scalar::F64);
 }
 
 #[test]

@@ -117,6 +117,7 @@ impl Pool {
                 Symbol::Stribeck(_) => 10,
                 Symbol::GravitySize(_) => 11,
                 Symbol::GravitySign(_) => 12,
+                Symbol::Gravity(_) => 13,
             };
             let drawn = draw(number, kind, symbol.index());
             Number::from(match symbol {
@@ -186,5 +187,6 @@ fn rational_value(symbol: Symbol, number: u64) -> Number {
         Symbol::Stribeck(i) => small(10, i),
         Symbol::GravitySize(i) => small(11, i),
         Symbol::GravitySign(i) => small(12, i),
+        Symbol::Gravity(i) => small(13, i),
     })
 }

@@ -78,6 +78,10 @@ impl Printer<'_> {
             Symbol::GravitySign(i) => {
                 return if text { format!("sign(g{})", i + 1) } else { format!("\\operatorname{{sign}} g_{{{}}}", i + 1) };
             }
+            Symbol::Gravity(i) => {
+                let axis = ['x', 'y', 'z'][usize::from(i)];
+                return if text { format!("g0{axis}") } else { format!("g_{{0{axis}}}") };
+            }
             Symbol::Parameter(i) => {
                 let name = &self.parameters[usize::from(i)];
                 return if text { name.clone() } else { latex_name(name) };

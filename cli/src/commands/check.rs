@@ -185,7 +185,8 @@ fn arm(source: &Source, description: &RobotDescription, manipulator: &Manipulato
     let at_nominal = |p: &Polynomial| derive::parameters::nominal(manipulator, p);
     let gravity: Vec<String> = manipulator.gravity.iter().map(|g| decimal(&at_nominal(g))).collect();
     let up = bodies::up(manipulator.gravity.each_ref().map(|g| at_nominal(g).to_f64()));
-    row("gravity", format!("({}) m/s²: {up}", gravity.join(", ")));
+    let argument = if manipulator.gravity_is_argument { "; an argument of the functions, nominal here" } else { "" };
+    row("gravity", format!("({}) m/s²: {up}{argument}", gravity.join(", ")));
     let rotors = manipulator.joints.iter().filter_map(|j| j.motor.as_ref()).map(|m| &m.mass);
     let links = manipulator.joints.iter().flat_map(|j| &j.link).map(|part| &part.body.mass);
     let total = links.chain(rotors).fold(Number::zero(), |sum, mass| &sum + &at_nominal(mass));

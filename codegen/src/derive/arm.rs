@@ -99,7 +99,7 @@ pub struct Joint {
 pub struct Arm {
     /// Joints, parents first.
     pub joints: Vec<Joint>,
-    /// Acceleration of gravity in the base frame.
+    /// Acceleration of free fall in the base frame: numbers, or symbols where it is an argument.
     pub gravity: Vector,
     /// Index of the link that carries the end effector.
     pub tip: usize,
@@ -246,7 +246,11 @@ impl Arm {
     /// The arm in a pool, its quantities as `view` says.
     pub fn new(pool: &mut Pool, manipulator: &Manipulator, view: View<'_>) -> Arm {
         let joints = (0..manipulator.joints.len()).map(|i| joint(pool, manipulator, view, i)).collect();
-        let gravity = manipulator.gravity.clone().map(|g| view.polynomial(pool, manipulator, &g));
+        let gravity = if manipulator.gravity_is_argument {
+            [0, 1, 2].map(|axis| pool.symbol(Symbol::Gravity(axis)))
+        } else {
+            manipulator.gravity.clone().map(|g| view.polynomial(pool, manipulator, &g))
+        };
         let tip = super::parameters::tip(manipulator);
         let mut arm =
             Arm { joints, gravity, tip, tool_rotation: crate::ring::matrix::IDENTITY, tool_origin: ZERO, base_moment: ZERO };

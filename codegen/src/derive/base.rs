@@ -77,6 +77,7 @@ fn field_values(pool: &Pool, y: &[Vec<ExprId>], state: u64) -> Vec<Vec<Element>>
             Symbol::Stribeck(i) => (10, i),
             Symbol::GravitySize(i) => (11, i),
             Symbol::GravitySign(i) => (12, i),
+            Symbol::Gravity(i) => (13, i),
         };
         field.from_u64(scramble(scramble(state << 8 | kind) ^ u64::from(index)))
     };

@@ -24,7 +24,7 @@ pub struct Quantity {
     pub name: &'static str,
     /// Its symbol.
     pub symbol: Typeset,
-    /// Arguments of the plain function, in order.
+    /// Arguments of the plain function, in order; [`Argument::Gravity`] of arms alone that have the acceleration of free fall as an argument.
     pub arguments: &'static [Argument],
     /// What it returns.
     pub result: &'static [ResultPart],
@@ -122,6 +122,8 @@ pub enum Length {
 pub enum Argument {
     /// The parameter vector.
     Pi,
+    /// Acceleration of free fall in the base frame.
+    Gravity,
     /// Joint variables.
     Q,
     /// Joint rates.
@@ -317,13 +319,14 @@ impl Length {
 
 impl Argument {
     /// All of them.
-    pub const ALL: [Argument; 7] =
-        [Argument::Pi, Argument::Q, Argument::Dq, Argument::Ddq, Argument::Dqr, Argument::Ddqr, Argument::Tau];
+    pub const ALL: [Argument; 8] =
+        [Argument::Pi, Argument::Gravity, Argument::Q, Argument::Dq, Argument::Ddq, Argument::Dqr, Argument::Ddqr, Argument::Tau];
 
     /// Its name.
     pub fn name(self) -> &'static str {
         match self {
             Argument::Pi => "pi",
+            Argument::Gravity => "g0",
             Argument::Q => "q",
             Argument::Dq => "dq",
             Argument::Ddq => "ddq",
@@ -337,6 +340,7 @@ impl Argument {
     pub fn length(self) -> Length {
         match self {
             Argument::Pi => Length::Parameters,
+            Argument::Gravity => Length::Fixed(3),
             _ => Length::Dof,
         }
     }
@@ -345,6 +349,10 @@ impl Argument {
     pub fn meaning(self) -> &'static str {
         match self {
             Argument::Pi => "the parameters in the order of {PARAMETER_NAMES}, SI units.",
+            Argument::Gravity => {
+                "acceleration of free fall in the base frame, m/s²; {NOMINAL_GRAVITY} is that of the description. For a base that translates with the acceleration a it is g0 - a, exactly; \
+                 terms of a base that turns are missing."
+            }
             Argument::Q => "joint variables, rad (revolute) or m (prismatic).",
             Argument::Dq => "joint rates, rad/s or m/s.",
             Argument::Ddq => "joint accelerations, rad/s² or m/s².",
@@ -376,6 +384,17 @@ impl Quantity {
     /// Of quantities of the dynamics.
     pub const MISSING_WITHOUT_MASS: fn(&Model, bool) -> Option<String> =
         |model, _| model.manipulator.is_massless().then(|| "nothing in the arm has mass or inertia".into());
+
+    /// The arguments of its function for an arm, in order.
+    pub fn arguments_of(&self, with_parameters: bool, gravity_is_argument: bool) -> impl Iterator<Item = Argument> {
+        let there = move |argument: &Argument| *argument != Argument::Gravity || gravity_is_argument;
+        with_parameters.then_some(Argument::Pi).into_iter().chain(self.arguments.iter().copied().filter(there))
+    }
+
+    /// Whether the acceleration of free fall enters it.
+    pub fn depends_on_gravity(&self) -> bool {
+        self.arguments.contains(&Argument::Gravity)
+    }
 
     /// The name of the function, or of its form with parameters at run time.
     pub fn function_name(&self, with_parameters: bool) -> String {

@@ -63,11 +63,11 @@ pub(super) fn linked(text: &str, write: &dyn Fn(Link<'_>) -> String) -> String {
 /// The documentation of a quantity, whatever the arm.
 pub(super) fn of_quantity(quantity: &Quantity) -> Vec<Block> {
     let Documentation { title, formula, result, .. } = quantity.documentation;
-    let items = quantity.arguments.iter().map(argument).chain([format!("Returns {result}")]);
+    let items = quantity.arguments_of(false, false).map(argument).chain([format!("Returns {result}")]);
     vec![Block::text(title), Block::Formula(formula), Block::List(items.collect())]
 }
 
-fn argument(argument: &Argument) -> String {
+fn argument(argument: Argument) -> String {
     format!("{{{}}}: {}", argument.name(), argument.meaning())
 }
 
@@ -80,6 +80,8 @@ pub struct Described<'a> {
     pub with_parameters: bool,
     /// Acceleration of free fall in the base frame, m/s².
     pub gravity: &'a [Number; 3],
+    /// Whether that is an argument.
+    pub gravity_is_argument: bool,
     /// Whether joints have springs.
     pub has_springs: bool,
     /// Whether joints have friction that is neither viscous nor Coulomb's.
@@ -104,6 +106,7 @@ pub(super) fn described<'a>(function: &Function, module: &'a Module) -> Describe
         quantity: function.quantity,
         with_parameters: function.with_parameters,
         gravity: &module.gravity,
+        gravity_is_argument: module.gravity_is_argument,
         has_springs: module.has_springs,
         has_more_friction: module.has_more_friction,
         has_stribeck: module.has_stribeck,
@@ -122,8 +125,8 @@ pub(super) fn function(function: &Function, module: &Module, allocates: bool) ->
 
 impl Described<'_> {
     /// The arguments of the function.
-    pub(super) fn arguments(&self) -> impl Iterator<Item = &'static Argument> {
-        self.with_parameters.then_some(&Argument::Pi).into_iter().chain(self.quantity.arguments)
+    pub(super) fn arguments(&self) -> impl Iterator<Item = Argument> {
+        self.quantity.arguments_of(self.with_parameters, self.gravity_is_argument)
     }
 
     /// Its name in the module.
@@ -152,7 +155,7 @@ impl Described<'_> {
             true => (result_with.unwrap_or(result), failure[1]),
         };
         let mut blocks = vec![Block::text(title)];
-        if names_gravity {
+        if names_gravity && !self.gravity_is_argument {
             let [x, y, z] = self.gravity.each_ref().map(Number::to_f64);
             blocks.push(Block::text(format!("The acceleration of free fall is g0 = ({x}, {y}, {z}) m/s² in the base frame.")));
         }
@@ -230,6 +233,8 @@ pub struct DescribedParameters {
     pub base_parameters: Option<Vec<(String, String)>>,
     /// By how many rad the frame of the last link is turned, if it is, as it is written.
     pub turn: Option<String>,
+    /// Whether the acceleration of free fall is an argument.
+    pub gravity_is_argument: bool,
 }
 
 impl DescribedParameters {
@@ -239,6 +244,7 @@ impl DescribedParameters {
             parameters: named(&module.parameters),
             base_parameters: has_base_parameters(module).then(|| named(&module.base_set)),
             turn: turn(module),
+            gravity_is_argument: module.gravity_is_argument,
         }
     }
 

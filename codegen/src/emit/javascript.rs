@@ -11,7 +11,7 @@ use super::plain::{
 use super::private::filled;
 use super::rust::asks_for_sines;
 use super::{Language, Notes, Origin};
-use crate::catalogue::{Argument, Length, Quantity};
+use crate::catalogue::{Length, Quantity};
 use crate::exact::Number;
 use crate::kinds::Scalar;
 use crate::program::listing::{decimal, BodyPart, Line, Listing, Name};
@@ -195,10 +195,7 @@ fn print_function(text: &mut String, module: &Module, function: &Function, notes
     *text += &function_comment(&described, note);
     let _ = writeln!(text, "export function {}({}) {{", camel(&function.name()), names.join(", "));
     for argument in &function.arguments {
-        let length = match argument {
-            Argument::Pi => "PARAMETERS",
-            _ => "DOF",
-        };
+        let length = argument.length().constant();
         let _ = writeln!(text, "    check(\"{0}\", {0}, {length});", argument.name());
     }
     for wave in waves(module, function, &JavaScript) {

@@ -266,10 +266,7 @@ fn in_blocks(text: &mut String, module: &Module, function: &Function, name: &str
         }
     }
     for argument in &function.arguments {
-        let rows = match argument {
-            Argument::Pi => module.parameters.len(),
-            _ => module.joints.len(),
-        };
+        let rows = argument.length().of(&module.sizes());
         let _ = writeln!(text, "    check('{0}', {0}, {rows}, n);", argument.name());
     }
     let _ = writeln!(text, "    if n <= {BLOCK}");

@@ -194,7 +194,7 @@ pub(super) struct Constant {
 }
 
 /// The constants of a module in order, with the base parameters last.
-const CONSTANTS: [&str; 15] = [
+const CONSTANTS: [&str; 16] = [
     "NAME",
     "DOF",
     "JOINT_NAMES",
@@ -207,6 +207,7 @@ const CONSTANTS: [&str; 15] = [
     "PARAMETERS",
     "PARAMETER_NAMES",
     "NOMINAL_PARAMETERS",
+    "NOMINAL_GRAVITY",
     "BASE_PARAMETERS",
     "BASE_PARAMETER_NAMES",
     "NOMINAL_BASE_PARAMETERS",
@@ -233,6 +234,7 @@ pub(super) fn constants_documentation(described: &DescribedParameters, first: us
         "PARAMETERS" => "Number of parameters.".into(),
         "PARAMETER_NAMES" => "Names of the parameters, in the order of the columns of {regressor}:".into(),
         "NOMINAL_PARAMETERS" => "Values of the parameters in the description.".into(),
+        "NOMINAL_GRAVITY" => "Acceleration of free fall in the description, in the base frame, m/s².".into(),
         "BASE_PARAMETERS" => {
             "Number of base parameters: as many as a motion can tell apart, without those that are 0 at the values of the description."
                 .into()
@@ -252,7 +254,13 @@ pub(super) fn constants_documentation(described: &DescribedParameters, first: us
         };
         (name, blocks)
     };
-    CONSTANTS.into_iter().filter(|name| !name.contains("BASE_") || described.base_parameters.is_some()).map(of).collect()
+    let there = |name: &&str| has_constant(name, described.base_parameters.is_some(), described.gravity_is_argument);
+    CONSTANTS.into_iter().filter(there).map(of).collect()
+}
+
+/// Whether a module has a constant.
+fn has_constant(name: &str, base_parameters: bool, gravity_is_argument: bool) -> bool {
+    (!name.contains("BASE_") || base_parameters) && (name != "NOMINAL_GRAVITY" || gravity_is_argument)
 }
 
 /// The constants of a module, in order; `first`: first index of the language.
@@ -283,12 +291,14 @@ pub(super) fn constants(module: &Module, first: usize) -> Vec<Constant> {
             "PARAMETERS" => Value::Count(module.parameters.len()),
             "PARAMETER_NAMES" => names(&module.parameters),
             "NOMINAL_PARAMETERS" => nominal(&module.parameters),
+            "NOMINAL_GRAVITY" => Value::Array(module.gravity.iter().cloned().map(Value::Number).collect()),
             "BASE_PARAMETERS" => Value::Count(module.base_set.len()),
             "BASE_PARAMETER_NAMES" => names(&module.base_set),
             _ => nominal(&module.base_set),
         },
     };
-    CONSTANTS.into_iter().filter(|name| !name.contains("BASE_") || has_base_parameters(module)).map(of).collect()
+    let there = |name: &&str| has_constant(name, has_base_parameters(module), module.gravity_is_argument);
+    CONSTANTS.into_iter().filter(there).map(of).collect()
 }
 
 /// The head of a file as comment lines: its origin, and the functions that the module lacks.

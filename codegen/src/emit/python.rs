@@ -13,7 +13,7 @@ use super::plain::{
 use super::private::filled;
 use super::rust::asks_for_sines;
 use super::{Language, Notes, Origin};
-use crate::catalogue::{Argument, Length, Quantity};
+use crate::catalogue::{Length, Quantity};
 use crate::exact::Number;
 use crate::kinds::Scalar;
 use crate::program::listing::{decimal, BodyPart, Line, Listing, Name};
@@ -174,10 +174,7 @@ impl Python {
         let (described, note) = described(module, function, notes);
         *text += &function_comment(&described, note);
         let entered = function.arguments.iter().map(|a| {
-            let length = match a {
-                Argument::Pi => "PARAMETERS",
-                _ => "DOF",
-            };
+            let length = a.length().constant();
             format!("(\"{0}\", {0}, {length})", a.name())
         });
         let entered: Vec<String> = entered.collect();

@@ -174,6 +174,14 @@ fn constants(module: &Module) -> TokenStream {
     let [of_position, of_velocity, of_effort] = ["POSITION_LIMITS", "VELOCITY_LIMITS", "EFFORT_LIMITS"].map(said);
     let [of_rows, of_task] = ["TASK_ROWS", "TASK"].map(said);
     let [of_parameters, of_names, of_nominal] = ["PARAMETERS", "PARAMETER_NAMES", "NOMINAL_PARAMETERS"].map(said);
+    let gravity = module.gravity_is_argument.then(|| {
+        let (said, nominal) = (said("NOMINAL_GRAVITY"), module.gravity.iter().map(|component| literal(component, module.scalar)));
+        quote! {
+            #said
+            #[allow(dead_code, clippy::all)]
+            pub const NOMINAL_GRAVITY: [Real; 3] = [#(#nominal),*];
+        }
+    });
     let base = base_constants(module, &documented);
     let structures = structures(module, false);
     quote! {
@@ -213,6 +221,7 @@ fn constants(module: &Module) -> TokenStream {
         #of_nominal
         #[allow(dead_code, clippy::all)]
         pub const NOMINAL_PARAMETERS: [Real; PARAMETERS] = [#(#nominal),*];
+        #gravity
         #base
         #(#structures)*
     }

@@ -119,6 +119,7 @@ impl Argument {
             Symbol::ReferenceAcceleration(_) => Argument::Ddqr,
             Symbol::Torque(_) => Argument::Tau,
             Symbol::Parameter(_) => Argument::Pi,
+            Symbol::Gravity(_) => Argument::Gravity,
         }
     }
 }

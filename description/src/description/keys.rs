@@ -38,6 +38,8 @@ pub(super) enum Shape {
     Expression(&'static str),
     /// A list of so many expressions in this unit.
     Vector(usize, &'static str),
+    /// The acceleration of free fall, or a mapping of [`GRAVITY`].
+    Gravity,
     /// A mapping, by the name of its definition in the schema.
     Mapping(&'static str, &'static [Entry]),
     /// A list of such mappings.
@@ -112,11 +114,19 @@ const POSITION: &str = "rad or m";
 const RATE: &str = "rad/s or m/s";
 const EFFORT: &str = "N m or N";
 
+/// The keys of `gravity` where it is an argument.
+pub(super) const GRAVITY: &[Entry] = &[required(
+    "argument",
+    "argument: [0, 0, -9.81]",
+    Shape::Vector(3, "m/s²"),
+    "Nominal acceleration of free fall in the base frame; functions that depend on it take it as an argument.",
+)];
+
 /// The keys of the file.
 pub(super) const ROBOT: &[Entry] = &[
     required("name", "name: my_robot", Shape::RobotName, "Name of the robot: the constant NAME of the module, and the beginning of names in C."),
     required("convention", "convention: standard", Shape::Word(CONVENTION_WORDS), "The kind of rows. standard: Rz(theta) Tz(d) Tx(a) Rx(alpha), as Siciliano writes them. modified: Rx(alpha) Tx(a) Rz(theta) Tz(d), as Craig and Khalil write them. urdf: origin, then the motion about or along axis."),
-    required("gravity", "gravity: [0, 0, -9.81]", Shape::Vector(3, "m/s²"), "Acceleration of free fall in the base frame: [0, 0, -9.81] if z0 points up."),
+    required("gravity", "gravity: [0, 0, -9.81]", Shape::Gravity, "Acceleration of free fall in the base frame: [0, 0, -9.81] if z0 points up."),
     optional("units", Shape::Units, "Units of the numbers of this file; SI units if left out."),
     optional("products", Shape::Word(PRODUCT_WORDS), "Sign of the products of inertia. tensor (the default): xy is the element -∫xy dm of the tensor. integral: xy is ∫xy dm."),
     optional("parameters", Shape::Parameters, "Named quantities for every expression, also for later parameters."),

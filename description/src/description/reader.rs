@@ -1,8 +1,8 @@
 //! Tree of nodes -> [`RobotDescription`]. [`keys`](super::keys) declares the keys and the kinds of their values.
 
 use super::keys::{
-    Entry, ATTACHED, CONVENTIONS, FRICTION, INERTIA, INVERSE_KINEMATICS, JOINT, JOINT_KINDS, LIMITS, LINK, MOST_POSES, MOTOR,
-    PAYLOAD, POSE, PRODUCTS, REGRESSORS, ROBOT, ROTATIONS, SPRING, STRIBECK, TARGETS, URDF_JOINT,
+    Entry, ATTACHED, CONVENTIONS, FRICTION, GRAVITY, INERTIA, INVERSE_KINEMATICS, JOINT, JOINT_KINDS, LIMITS, LINK, MOST_POSES,
+    MOTOR, PAYLOAD, POSE, PRODUCTS, REGRESSORS, ROBOT, ROTATIONS, SPRING, STRIBECK, TARGETS, URDF_JOINT,
 };
 use super::other_formats::{OTHER_NAMES, OTHER_PLACES};
 use super::units::{UnitKey, KEYS};
@@ -42,7 +42,8 @@ impl Reader<'_> {
         RobotDescription {
             name: fields.get("name").and_then(|(key, node)| self.word(node, key, "name")),
             convention,
-            gravity: fields.get("gravity").and_then(|(key, node)| self.vector(node, key, "gravity", ["x", "y", "z"])),
+            gravity: fields.get("gravity").and_then(|(key, node)| self.gravity(node, key)),
+            gravity_is_argument: fields.get("gravity").is_some_and(|(_, node)| matches!(node.kind, Kind::Mapping(_))),
             units: fields.get("units").map_or_else(Vec::new, |(key, node)| self.units(node, key)),
             products: fields.get("products").and_then(|(key, node)| {
                 let help = "`tensor`: xy is the element -∫xy dm of the inertia tensor; `integral`: xy is ∫xy dm, which has the other sign";
@@ -60,6 +61,18 @@ impl Reader<'_> {
                 .and_then(|(key, node)| self.inverse_kinematics(node, key))
                 .unwrap_or_default(),
             allow: fields.get("allow").map_or_else(Vec::new, |(key, node)| self.allow(node, key)),
+        }
+    }
+
+    /// The acceleration of free fall, or its nominal value where it is an argument.
+    fn gravity(&mut self, node: &Node, key: Span) -> Option<Spanned<[Value; 3]>> {
+        let parts = ["x", "y", "z"];
+        match node.kind {
+            Kind::Mapping(_) => {
+                let (key, node) = self.mapping(node, "`gravity`", key, GRAVITY)?.get("argument")?;
+                self.vector(node, key, "argument", parts)
+            }
+            _ => self.vector(node, key, "gravity", parts),
         }
     }
 
@@ -340,7 +353,7 @@ impl Reader<'_> {
     fn vector<const N: usize>(&mut self, node: &Node, key: Span, name: &str, parts: [&str; N]) -> Option<Spanned<[Value; N]>> {
         // A copied example must be valid, and must not switch gravity off.
         let example = match (name, N) {
-            ("gravity", _) => "0, 0, -9.81".to_owned(),
+            ("gravity" | "argument", _) => "0, 0, -9.81".to_owned(),
             ("axis", _) => "0, 0, 1".to_owned(),
             ("quat", _) => "1, 0, 0, 0".to_owned(),
             ("xyaxes", _) => "1, 0, 0, 0, 1, 0".to_owned(),

@@ -7,7 +7,7 @@ use std::borrow::Borrow;
 
 use serde_json::{json, Map, Value};
 
-use super::keys::{Entry, Shape, CONVENTIONS, JOINT, MOST_POSES, POSE, REGRESSORS, ROBOT, ROTATIONS, URDF_JOINT};
+use super::keys::{Entry, Shape, CONVENTIONS, GRAVITY, JOINT, MOST_POSES, POSE, REGRESSORS, ROBOT, ROTATIONS, URDF_JOINT};
 use super::units::KEYS;
 use super::Convention;
 use crate::diagnostic::{Code, Severity};
@@ -131,6 +131,11 @@ fn property(entry: &Entry, definitions: &mut Map<String, Value>) -> Value {
         Shape::Vector(length, of) => {
             unit = of;
             json!({ "type": "array", "items": number, "minItems": length, "maxItems": length })
+        }
+        Shape::Gravity => {
+            unit = "m/s²";
+            let vector = json!({ "type": "array", "items": number, "minItems": 3, "maxItems": 3 });
+            json!({ "anyOf": [vector, define("gravity", GRAVITY)] })
         }
         Shape::Mapping(name, keys) => define(name, keys),
         Shape::List(name, keys) => json!({ "type": "array", "items": define(name, keys) }),

@@ -1,12 +1,15 @@
 //! Task, regressor and inverse kinematics: rows and names, each at most once, each known.
 
 use super::number::text_of;
+use super::places::Role;
 use super::{Context, FirstSeen};
 use crate::description::{RegressorDescription, RobotDescription};
 use crate::diagnostic::{Code, Diagnostic, Diagnostics};
 use crate::document::excerpt;
+use crate::exact::Polynomial;
 use crate::kinds::TaskRow;
 use crate::manipulator::{GivenBeside, LinkId, Postures, RegressorChoice};
+use crate::source::Span;
 use crate::suggest::did_you_mean;
 
 /// After so many unknown names no more is guessed about what was meant: each guess compares the name with all that are defined.
@@ -115,4 +118,34 @@ pub(super) fn regressor(description: &RobotDescription, context: &mut Context<'_
         context.diagnostics.push(fault);
     }
     Some(RegressorChoice::Names(symbols))
+}
+
+/// Reports names that would be entries of the parameter vector and, in the nominal value of `gravity`, of another argument.
+pub(super) fn gravity_argument(
+    description: &RobotDescription,
+    gravity: &[Polynomial; 3],
+    regressor: &RegressorChoice,
+    context: &mut Context<'_>,
+) {
+    let (RegressorChoice::Names(listed), true) = (regressor, description.gravity_is_argument) else { return };
+    let mut faults = Vec::new();
+    for entry in &context.evaluator.parameters.entries {
+        let Some(id) = entry.symbol.filter(|id| listed.contains(id)) else { continue };
+        if !gravity.iter().any(|component| component.terms().any(|(powers, _)| powers.iter().any(|(name, _)| *name == id))) {
+            continue;
+        }
+        let shown = excerpt(entry.name);
+        let message = format!("`{shown}` is part of `gravity`, which is an argument, and the regressor lists it");
+        let help = format!(
+            "take `{shown}` off the list: it is then a number of the nominal gravity; \
+             or write `gravity` as a list without `argument`: it then changes with the parameters"
+        );
+        let direct = entry.uses.iter().find(|found| found.role == Role::Gravity).map(|found| found.span);
+        let whole = description.gravity.as_ref().map_or_else(Span::default, |gravity| gravity.span);
+        let fault = Diagnostic::new(Code::GravityArgument, direct.unwrap_or(whole), message, "an argument", help);
+        faults.push(fault.also(entry.span, "a parameter, which is an argument too"));
+    }
+    for fault in faults {
+        context.diagnostics.push(fault);
+    }
 }

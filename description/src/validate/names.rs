@@ -20,6 +20,9 @@ const FUNCTIONS: [&str; 6] = ["sin", "cos", "sign", "atan", "atan2", "acos"];
 /// Joint variables, rates, accelerations and torques in printed equations, each followed by the joint's number.
 const VARIABLES: [&str; 6] = ["q", "dq", "ddq", "dqr", "ddqr", "tau"];
 
+/// Coordinates of the acceleration of free fall in printed equations, where that is an argument.
+const FREE_FALL: [&str; 3] = ["g0x", "g0y", "g0z"];
+
 /// Checks every name that the file gives.
 pub(super) fn check(description: &RobotDescription, diagnostics: &mut Diagnostics) {
     // The robot's name stands in the emitted text as a text and as the beginning of names: no word is reserved for it.
@@ -28,6 +31,13 @@ pub(super) fn check(description: &RobotDescription, diagnostics: &mut Diagnostic
     }
     for parameter in &description.parameters {
         check_name(&parameter.name, "a parameter", diagnostics);
+        let name = parameter.name.value.as_str();
+        if description.gravity_is_argument && FREE_FALL.contains(&name) {
+            let message =
+                format!("`{name}` cannot be the name of a parameter: it is a coordinate of gravity in printed equations");
+            let help = format!("choose another name, such as `{name}_`");
+            diagnostics.push(Diagnostic::new(Code::ReservedName, parameter.name.span, message, "reserved", help));
+        }
     }
     let mut seen = FirstSeen::new();
     for name in description.joints.iter().flat_map(|joints| &joints.value).filter_map(|joint| joint.name.as_ref()) {

@@ -147,7 +147,8 @@ pub(super) fn check(description: &RobotDescription, context: &mut Context<'_>) {
     }
     arm.check_rates(context);
     if let Some(payload) = &description.payload {
-        let weightless = description.gravity.as_ref().is_some_and(|g| g.value.iter().all(|g| number(g, context) == 0.0));
+        let weightless = !description.gravity_is_argument
+            && description.gravity.as_ref().is_some_and(|g| g.value.iter().all(|g| number(g, context) == 0.0));
         arm.check_payload(payload, doubted, weightless, context);
     }
     if !doubtful {

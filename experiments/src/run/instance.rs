@@ -108,7 +108,12 @@ macro_rules! instance {
             robot,
             emitted::TASK,
             emitted::Nominal,
-            |parameters| emitted::WithParameters { parameters },
+            |parameters| {
+                // The nominal gravity, where a robot has one of its own.
+                #[allow(clippy::needless_update)]
+                let robot = emitted::WithParameters { parameters, ..Default::default() };
+                robot
+            },
         )
         .solved_by({
             // Exactly one of the two traits has the method for this robot.

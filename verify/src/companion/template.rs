@@ -54,6 +54,7 @@ enum Name {
     Dqr,
     Ddqr,
     Tau,
+    Gravity, // with gravity as an argument
 }
 
 /// Arguments, empty where a function has none of that name.
@@ -66,9 +67,10 @@ struct Given<'a> {
     dqr: &'a [Real],
     ddqr: &'a [Real],
     tau: &'a [Real],
+    g0: &'a [Real], // with gravity as an argument
 }
 
-const NONE: Given<'static> = Given { pi: &[], q: &[], dq: &[], ddq: &[], dqr: &[], ddqr: &[], tau: &[] };
+const NONE: Given<'static> = Given { pi: &[], q: &[], dq: &[], ddq: &[], dqr: &[], ddqr: &[], tau: &[], g0: &[] };
 
 /// Half of the distance from 1 to the next number.
 const UNIT: Real = Real::EPSILON / 2.0;
@@ -178,6 +180,7 @@ fn forward(steps: &[Step], angles: &[Angle<'_>], given: &Given<'_>, values: &mut
                     Name::Dqr => given.dqr,
                     Name::Ddqr => given.ddqr,
                     Name::Tau => given.tau,
+                    Name::Gravity => given.g0, // with gravity as an argument
                 };
                 Bounded { value: argument[index as usize], error: 0.0 }
             }

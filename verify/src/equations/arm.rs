@@ -330,6 +330,15 @@ impl<E: Element> Arm<E> {
         }
     }
 
+    /// The same arm under another gravity, where that is an argument: of the three coordinates given.
+    #[must_use]
+    pub fn under(mut self, gravity: &[E]) -> Arm<E> {
+        for (own, given) in self.gravity.iter_mut().zip(gravity) {
+            own.clone_from(given);
+        }
+        self
+    }
+
     /// Number of joints.
     pub fn dof(&self) -> usize {
         self.joints.len()

@@ -393,15 +393,17 @@ pub fn base_map<K: Arithmetic>(
     arm: &Arm<K::Element>,
     base: &[Standard],
     all: &[Standard],
+    gravity_is_argument: bool,
 ) -> Result<Vec<Vec<K::Element>>, String> {
     let n = arm.dof();
     let states = base.len().div_ceil(n) + 3;
     let (mut left, mut right) = (Vec::new(), Vec::new());
     for _ in 0..states {
         let fades = (0..n).map(|i| all.contains(&Standard::Stribeck(i)));
-        let state = State::draw(arithmetic, n).with_stribeck(arithmetic, fades);
-        let y = standard_columns(arm, &state, base, LinkFrames::Joint);
-        let full = standard_columns(arm, &state, all, LinkFrames::Described);
+        let state = State::draw(arithmetic, n).with_stribeck(arithmetic, fades).with_gravity(arithmetic, gravity_is_argument);
+        let arm = arm.clone().under(&state.g0);
+        let y = standard_columns(&arm, &state, base, LinkFrames::Joint);
+        let full = standard_columns(&arm, &state, all, LinkFrames::Described);
         // Friction and the rest separately: friction is never part of a weight, although both may be constant on a prismatic joint.
         for (row, friction) in (0..n).flat_map(|row| [(row, false), (row, true)]) {
             let part = |columns: &[Vec<K::Element>], of: &[Standard]| {

@@ -31,6 +31,8 @@ pub struct State<E> {
     pub stribeck_velocities: Vec<E>,
     /// The parameter vector.
     pub pi: Vec<E>,
+    /// Acceleration of free fall; empty where that is no argument.
+    pub g0: Vec<E>,
     /// 0.
     pub zero: E,
     /// 1.
@@ -40,9 +42,9 @@ pub struct State<E> {
 impl<E: Element> State<E> {
     /// A state with these arguments, without Stribeck friction.
     pub fn of(arguments: Arguments<E>, angles: Vec<(E, E)>, signs: Vec<E>, [zero, one]: [E; 2]) -> State<E> {
-        let Arguments { pi, q, dq, ddq, dqr, ddqr, tau } = arguments;
+        let Arguments { pi, q, dq, ddq, dqr, ddqr, tau, g0 } = arguments;
         let (stribeck, stribeck_velocities) = (vec![zero.clone(); q.len()], vec![one.clone(); q.len()]);
-        State { angles, q, dq, ddq, dqr, ddqr, tau, signs, stribeck, stribeck_velocities, pi, zero, one }
+        State { angles, q, dq, ddq, dqr, ddqr, tau, signs, stribeck, stribeck_velocities, pi, g0, zero, one }
     }
 
     /// The same with random exponentials for joints with Stribeck friction.
@@ -58,6 +60,15 @@ impl<E: Element> State<E> {
         self
     }
 
+    /// The same with a random acceleration of free fall, where that is an argument.
+    #[must_use]
+    pub fn with_gravity<K: Arithmetic<Element = E>>(mut self, arithmetic: &mut K, is_argument: bool) -> State<E> {
+        if is_argument {
+            self.g0 = (0..3).map(|_| arithmetic.draw()).collect();
+        }
+        self
+    }
+
     /// A random state without Stribeck friction; the caller fills in `pi`.
     pub fn draw<K: Arithmetic<Element = E>>(arithmetic: &mut K, n: usize) -> State<E> {
         let mut many = |_| (0..n).map(|_| arithmetic.draw()).collect::<Vec<E>>();
@@ -65,7 +76,8 @@ impl<E: Element> State<E> {
         let angles = (0..n).map(|_| arithmetic.draw_angle()).collect();
         let (zero, one) = (arithmetic.integer(0), arithmetic.integer(1));
         let (stribeck, stribeck_velocities) = (vec![zero.clone(); n], vec![one.clone(); n]);
-        State { angles, q, dq, ddq, dqr, ddqr, tau, signs, stribeck, stribeck_velocities, pi: Vec::new(), zero, one }
+        let [pi, g0] = [Vec::new(), Vec::new()];
+        State { angles, q, dq, ddq, dqr, ddqr, tau, signs, stribeck, stribeck_velocities, pi, g0, zero, one }
     }
 
     /// The state as dual numbers: joint variables change with `along`, rates with `rates`, everything else is constant.
@@ -95,6 +107,7 @@ impl<E: Element> State<E> {
             tau: still(&self.tau),
             signs: still(&self.signs),
             pi: still(&self.pi),
+            g0: still(&self.g0),
             zero: Dual::constant(&self.zero),
             one: Dual::constant(&self.one),
         }
@@ -117,6 +130,7 @@ impl<E> State<E> {
             stribeck: all(self.stribeck),
             stribeck_velocities: all(self.stribeck_velocities),
             pi: all(self.pi),
+            g0: all(self.g0),
             zero: of(self.zero),
             one: of(self.one),
         }
@@ -133,6 +147,7 @@ impl<E: Element> Inputs<E> for State<E> {
             Argument::Dqr => &self.dqr,
             Argument::Ddqr => &self.ddqr,
             Argument::Tau => &self.tau,
+            Argument::Gravity => &self.g0,
         };
         values[index].clone()
     }

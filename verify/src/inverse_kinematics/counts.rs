@@ -198,6 +198,7 @@ impl RationalPose {
             dqr: zeros.clone(),
             ddqr: zeros.clone(),
             tau: zeros.clone(),
+            g0: Vec::new(),
         };
         let state =
             State::of(arguments, self.values.iter().map(angle).collect(), zeros, [number(Rational::ZERO), number(Rational::ONE)]);

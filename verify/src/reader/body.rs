@@ -118,9 +118,10 @@ pub(super) fn compile<'a>(function: &Public<'a>, shared: &Shared<'a, '_>) -> Res
         given: usize::MAX,
     };
     match compiler.shared.written.get(function.name).copied().zip(Promise::of(function.name)) {
-        Some((body, (promise, with))) => {
+        Some((body, (promise, _))) => {
             compiler.parser.expect("{")?;
-            compiler.parser.expect_lists(&promise.calls_written(with, &format!("{}{INTO}", function.name)))?;
+            let written = format!("{}{INTO}", function.name);
+            compiler.parser.expect_lists(&promise.calls_written(&function.arguments, &written))?;
             compiler.parser.expect("result }")?;
             compiler.parser = body;
             compiler.parser.expect("{")?;

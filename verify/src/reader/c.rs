@@ -18,7 +18,7 @@ use super::{Constant, Fault, Function, Module};
 use crate::check::Check;
 use crate::contract::{Array, Length, Returned, Sizes};
 use crate::enclosure::Float;
-use crate::program::{Argument, Step};
+use crate::program::{Argument, Step, NOMINAL_GRAVITY};
 
 pub(super) const COMMENTS: Comments = Comments { line: None, block: Some(("/*", "*/")), behind: "" };
 
@@ -185,7 +185,7 @@ fn constants(
     for name in ["NAME", "JOINT_IS_REVOLUTE", "", "DOF", "PARAMETERS", "TASK_ROWS", "TASK", "JOINT_NAMES"]
         .into_iter()
         .chain(["POSITION_LIMITS", "VELOCITY_LIMITS", "EFFORT_LIMITS", "PARAMETER_NAMES", "NOMINAL_PARAMETERS"])
-        .chain(["BASE_PARAMETERS", "BASE_PARAMETER_NAMES", "NOMINAL_BASE_PARAMETERS"])
+        .chain([NOMINAL_GRAVITY, "BASE_PARAMETERS", "BASE_PARAMETER_NAMES", "NOMINAL_BASE_PARAMETERS"])
     {
         if name.is_empty() {
             lines.expect(&format!("typedef {word} {}_real;", robot.name))?;
@@ -196,13 +196,13 @@ fn constants(
         let left_out = match name {
             "TASK" => none("TASK_ROWS"),
             "PARAMETER_NAMES" | "NOMINAL_PARAMETERS" => none("PARAMETERS"),
-            "BASE_PARAMETERS" => !lines.peek().starts_with(&begin),
+            NOMINAL_GRAVITY | "BASE_PARAMETERS" => !lines.peek().starts_with(&begin),
             "BASE_PARAMETER_NAMES" | "NOMINAL_BASE_PARAMETERS" => none("BASE_PARAMETERS"),
             _ => false,
         };
         if left_out {
             // C has no arrays of length 0.
-            if !name.starts_with("BASE") && !name.starts_with("NOMINAL_BASE") {
+            if ["TASK", "PARAMETER_NAMES", "NOMINAL_PARAMETERS"].contains(&name) {
                 constants.insert(name.into(), Constant::Array(Vec::new()));
             }
             continue;
@@ -251,16 +251,14 @@ impl<'a> Functions<'a> for Reader<'a, '_> {
             self.part(lines, name)?;
             return Ok(None);
         }
-        let known = promised(name);
+        let known = promised(name, &self.sizes);
         let (promise, arguments) = known.ok_or_else(|| here(format!("`{name}` is not a function that an emitted module has")))?;
         let number = promise.returned == Returned::One(&[]);
         if number != (returns == Some(1)) {
             return Err(here(format!("`{name}` returns something else than it should")));
         }
-        let of_argument = |argument: &Argument| {
-            let length = if *argument == Argument::Pi { Length::Parameters } else { Length::Dof };
-            format!("    const {robot}_real {}{}", argument.name(), self.robot.length(length))
-        };
+        let of_argument =
+            |argument: &Argument| format!("    const {robot}_real {}{}", argument.name(), self.robot.length(argument.length()));
         let results = promise.returned.named();
         let of_result = |(part, array): &(String, Array)| {
             let lengths: String = array.iter().map(|length| self.robot.length(*length)).collect();

@@ -10,7 +10,7 @@ use super::sines::{self, Private};
 use crate::check::Check;
 use crate::contract::Promise;
 use crate::enclosure::Float;
-use crate::program::Argument;
+use crate::program::{Argument, NOMINAL_GRAVITY};
 use crate::reference::BASE_REGRESSOR;
 
 const LINTS: &str = "#[allow(dead_code)]";
@@ -21,7 +21,7 @@ const ALL_LINTS: &str = "#[allow(dead_code, clippy::all)]";
 pub(super) const INTO: &str = "_into";
 
 /// The permitted constants, with their types.
-const CONSTANTS: [(&str, &str); 15] = [
+const CONSTANTS: [(&str, &str); 16] = [
     ("NAME", "&str"),
     ("DOF", "usize"),
     ("JOINT_NAMES", "[&str; DOF]"),
@@ -34,6 +34,7 @@ const CONSTANTS: [(&str, &str); 15] = [
     ("PARAMETERS", "usize"),
     ("PARAMETER_NAMES", "[&str; PARAMETERS]"),
     ("NOMINAL_PARAMETERS", "[Real; PARAMETERS]"),
+    (NOMINAL_GRAVITY, "[Real; 3]"),
     ("BASE_PARAMETERS", "usize"),
     ("BASE_PARAMETER_NAMES", "[&str; BASE_PARAMETERS]"),
     ("NOMINAL_BASE_PARAMETERS", "[Real; BASE_PARAMETERS]"),
@@ -72,6 +73,8 @@ pub(super) struct Items<'a> {
     /// The comments before all items.
     pub(super) head: Vec<&'a str>,
     pub(super) real: Option<Float>,
+    /// Whether the acceleration of free fall is an argument.
+    gravity: bool,
     /// Type and position of each constant's value.
     pub(super) constants: BTreeMap<&'a str, (&'static str, Parser<'a>)>,
     /// The position of the struct's documentation.
@@ -110,7 +113,9 @@ impl<'a> Items<'a> {
     /// Reads all items.
     pub(super) fn read(text: &'a str) -> Result<Items<'a>, Fault> {
         let mut parser = Parser::new(text)?;
-        let mut items = Items::default();
+        // Functions may stand before the constants.
+        let gravity = text.contains(&format!("pub const {NOMINAL_GRAVITY}: "));
+        let mut items = Items { gravity, ..Items::default() };
         while parser.peek().kind == Kind::Comment {
             let line = parser.take()?;
             if items.head.len() == MOST_HEAD {
@@ -120,6 +125,9 @@ impl<'a> Items<'a> {
         }
         while parser.peek().kind != Kind::End {
             items.item(&mut parser)?;
+        }
+        if gravity != items.constants.contains_key(NOMINAL_GRAVITY) {
+            return Err(parser.peek().fault(format!("`{NOMINAL_GRAVITY}` stands where it is no constant")));
         }
         Ok(items)
     }
@@ -245,9 +253,8 @@ impl<'a> Items<'a> {
         if self.public.iter().any(|other| other.name == name.text) && Check::Once.is_made() {
             return Err(name.fault(format!("function `{}` stands twice", name.text)));
         }
-        signature(parser, &promise.signature(with))?;
-        let arguments = with.then_some("pi").into_iter().chain(promise.arguments.iter().copied());
-        let arguments = arguments.filter_map(Argument::named).collect();
+        let arguments = promise.arguments_of(with, self.gravity);
+        signature(parser, &format!("({})->{}", Promise::typed(&arguments).join(","), promise.returned.rust()))?;
         let body = *parser;
         self.public.push(Public { name: name.text, arguments, documentation: head.documentation, body });
         parser.expect("{")?;
@@ -265,7 +272,7 @@ impl<'a> Items<'a> {
         let public = if promise.has_form_into() { "pub " } else { "" };
         parser.expect(&format!("{ALL_LINTS} {public}fn {}", name.text))?;
         let results = results.into_iter().map(|(name, of)| format!("{name}:&mut{of}"));
-        let all: Vec<String> = promise.typed(with).into_iter().chain(results).collect();
+        let all: Vec<String> = Promise::typed(&promise.arguments_of(with, self.gravity)).into_iter().chain(results).collect();
         signature(parser, &format!("({})", all.join(",")))?;
         let body = *parser;
         parser.expect("{")?;
@@ -322,7 +329,7 @@ fn part<'a>(parser: &mut Parser<'a>, place: Parser<'a>) -> Result<Part<'a>, Faul
         let argument = Argument::named(token.text).filter(|argument| !arguments.contains(argument));
         let argument = argument.ok_or_else(|| token.fault(format!("{} is not an argument that a part has", token.shown())))?;
         arguments.push(argument);
-        parser.expect(if argument == Argument::Pi { ": &[Real; PARAMETERS]," } else { ": &[Real; DOF]," })?;
+        parser.expect(&format!(": &[Real; {}],", argument.length().rust()))?;
     }
     parser.expect("values: [Real;")?;
     let taken = integer(&parser.take()?)?;

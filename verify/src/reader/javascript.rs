@@ -17,7 +17,6 @@ use super::plain::{camel, names_of, promised, sizes, Body, Comments, Constants, 
 use super::{Constant, Fault, Function, Module};
 use crate::contract::{Length, Returned, Sizes};
 use crate::enclosure::Float;
-use crate::program::Argument;
 
 pub(super) const COMMENTS: Comments = Comments { line: Some("//"), block: Some(("/**", "*/")), behind: "" };
 
@@ -119,14 +118,14 @@ impl<'a> Functions<'a> for Reader<'a, '_> {
         let (name, names) = lines.between("export function ", ") {")?.split_once('(').unwrap_or_default();
         let known = names_of().find(|known| camel(known) == name);
         let (own, (promise, arguments)) = known
-            .and_then(|own| Some((own.clone(), promised(&own)?)))
+            .and_then(|own| Some((own.clone(), promised(&own, &self.sizes)?)))
             .ok_or_else(|| Fault { line, reason: format!("`{name}` is not a function that an emitted module has") })?;
         let wanted: Vec<&str> = arguments.iter().map(|a| a.name()).collect();
         if names != wanted.join(", ") {
             return Err(Fault { line, reason: format!("`{name}` takes ({}), not ({names})", wanted.join(", ")) });
         }
         for argument in &arguments {
-            let length = if *argument == Argument::Pi { "PARAMETERS" } else { "DOF" };
+            let length = argument.length().rust();
             lines.expect(&format!("    check(\"{0}\", {0}, {length});", argument.name()))?;
         }
         let mut body = Body::new(&own, arguments, self.syntax, Float::F64, self.steps);

@@ -213,7 +213,7 @@ impl Reader<'_> {
         let name = file.name.strip_suffix(".m").unwrap_or_default();
         let known = names_of().find(|known| camel(known) == name);
         let (own, (promise, arguments)) = known
-            .and_then(|own| Some((own.clone(), promised(&own)?)))
+            .and_then(|own| Some((own.clone(), promised(&own, &self.sizes)?)))
             .ok_or_else(|| begin(format!("`{}` is not a file that an emitted package has", file.name)))?;
         // Parts follow the functions that call them.
         let mut parts = Parts::default();
@@ -278,7 +278,7 @@ impl Reader<'_> {
             }
         }
         for argument in arguments {
-            let rows = if *argument == Argument::Pi { self.sizes.p } else { self.sizes.n };
+            let rows = argument.length().of(&self.sizes);
             lines.expect(&format!("    check('{0}', {0}, {rows}, n);", argument.name()))?;
         }
         lines.expect("    if n <= 4096")?;

@@ -23,14 +23,13 @@ pub(super) use parts::Parts;
 
 use super::lexer::Fault;
 use super::Function;
-use crate::contract::Promise;
+use crate::contract::{Promise, Sizes};
 use crate::program::Argument;
 
-/// The function with this name, its arguments, and whether it takes parameters.
-pub(super) fn promised(name: &str) -> Option<(&'static Promise, Vec<Argument>)> {
+/// The function with this name, and its arguments in a module of these sizes.
+pub(super) fn promised(name: &str, sizes: &Sizes) -> Option<(&'static Promise, Vec<Argument>)> {
     let (promise, with) = Promise::of(name)?;
-    let arguments = with.then_some("pi").into_iter().chain(promise.arguments.iter().copied());
-    Some((promise, arguments.filter_map(Argument::named).collect()))
+    Some((promise, promise.arguments_of(with, sizes.gravity)))
 }
 
 /// The functions after the constants of a module, with everything that belongs to them.

@@ -18,7 +18,6 @@ use super::plain::{names_of, promised, sizes, Body, Comments, Constants, Functio
 use super::{Constant, Fault, Function, Module};
 use crate::contract::{Length, Promise, Returned, Sizes};
 use crate::enclosure::Float;
-use crate::program::Argument;
 
 pub(super) const COMMENTS: Comments = Comments { line: Some("#"), block: Some(("    \"\"\"", "\"\"\"")), behind: ":" };
 
@@ -167,7 +166,7 @@ impl<'a> Functions<'a> for Reader<'a, '_> {
         }
         let line = lines.number();
         let name = lines.peek().strip_prefix("def ").and_then(|rest| rest.split('(').next()).unwrap_or_default();
-        let known = promised(name);
+        let known = promised(name, &self.sizes);
         let (promise, arguments) =
             known.ok_or_else(|| Fault { line, reason: format!("`{name}` is not a function that an emitted module has") })?;
         let names: Vec<String> = arguments.iter().map(|a| a.name().to_string()).collect();
@@ -178,7 +177,7 @@ impl<'a> Functions<'a> for Reader<'a, '_> {
         let documentation = lines.all.get(lines.at).map_or(Vec::new(), |line| line.comment.clone());
         let documentation = documentation.into_iter().map(String::from).collect();
         let entered = arguments.iter().map(|argument| {
-            let length = if *argument == Argument::Pi { "PARAMETERS" } else { "DOF" };
+            let length = argument.length().rust();
             format!("(\"{0}\", {0}, {length})", argument.name())
         });
         let entered: Vec<String> = entered.collect();
@@ -251,8 +250,9 @@ impl<'a> Reader<'a, '_> {
     /// A type for several results.
     fn class(&mut self, lines: &mut Lines<'a>) -> Result<(), Fault> {
         let name = lines.between("class ", "(NamedTuple):")?;
-        let promise =
-            names_of().filter_map(|own| promised(&own)).find(|(promise, _)| structure(promise).as_deref() == Some(name));
+        let promise = names_of()
+            .filter_map(|own| promised(&own, &self.sizes))
+            .find(|(promise, _)| structure(promise).as_deref() == Some(name));
         let (promise, _) = promise.ok_or_else(|| lines.fault(format!("`{name}` is no type of results")))?;
         for (field, _) in promise.returned.named() {
             lines.expect(&format!("    {field}: Any"))?;

@@ -9,18 +9,27 @@ use crate::contract::Length;
 use crate::enclosure::Float;
 use crate::float::Arguments;
 use crate::marked::{marked, LOAD};
+use crate::program::Argument;
 use crate::reader::{camel, in_the_name_of};
 
 /// The template of a language, after its line BEGIN; `sign` begins a comment.
 fn template(text: &'static str, sign: &str, kit: &Kit) -> String {
     let template = text.split_once("BEGIN").and_then(|(_, rest)| rest.split_once('\n')).map_or("", |(_, rest)| rest);
-    marked(template, sign, &[(LOAD, kit.loaded)])
+    let template = marked(template, sign, &[(LOAD, kit.loaded)]);
+    match sign {
+        "//" => kit.with_gravity(template, &|name| format!("robot.{}(", camel(name)), "[1.5, -2.25, 9.5]"),
+        "#" => kit.with_gravity(template, &|name| format!("robot.{name}("), "np.array([1.5, -2.25, 9.5])"),
+        "%" => kit.with_gravity(template, &|name| format!("robot.{}(", camel(name)), "[1.5; -2.25; 9.5]"),
+        _ => kit.with_gravity(template, &|name| format!("robot_{name}("), "free_fall"),
+    }
 }
 
 /// Arguments by name.
-fn named(state: &Arguments<f64>) -> [(&'static str, &[f64]); 7] {
-    let Arguments { q, dq, ddq, dqr, ddqr, tau, pi } = state;
-    [("q", q), ("dq", dq), ("ddq", ddq), ("dqr", dqr), ("ddqr", ddqr), ("tau", tau), ("pi", pi)]
+fn named(state: &Arguments<f64>) -> Vec<(&'static str, &[f64])> {
+    let Arguments { q, dq, ddq, dqr, ddqr, tau, pi, g0 } = state;
+    let all: [(_, &[f64]); 8] =
+        [("q", q), ("dq", dq), ("ddq", ddq), ("dqr", dqr), ("ddqr", ddqr), ("tau", tau), ("pi", pi), ("g0", g0)];
+    all.into_iter().filter(|(name, entries)| *name != "g0" || !entries.is_empty()).collect()
 }
 
 /// The test file; `module` is the name of the imported file, module or package.
@@ -48,9 +57,9 @@ pub(super) fn print(kit: &Kit, language: Language, module: &str, origin: &Origin
 }
 
 /// The arguments of a call, each written by `of_state`.
-fn arguments(value: &Value, of_state: &dyn Fn(&str) -> String) -> String {
-    let names = value.with.then_some("pi").into_iter().chain(value.promise.arguments.iter().copied());
-    names.map(of_state).collect::<Vec<_>>().join(", ")
+fn arguments(kit: &Kit, value: &Value, of_state: &dyn Fn(&str) -> String) -> String {
+    let arguments = value.promise.arguments_of(value.with, kit.sizes.gravity);
+    arguments.into_iter().map(|argument| of_state(argument.name())).collect::<Vec<_>>().join(", ")
 }
 
 fn javascript(kit: &Kit, module: &str) -> String {
@@ -68,7 +77,7 @@ fn javascript(kit: &Kit, module: &str) -> String {
         "];\n\n/** Function, number of the state, value on this machine, value from the equations. */\nconst values = () => [\n";
     for value in &kit.values {
         let (name, state) = (camel(&value.name), value.state);
-        let call = format!("robot.{name}({})", arguments(value, &|name| format!("STATES[{state}].{name}")));
+        let call = format!("robot.{name}({})", arguments(kit, value, &|name| format!("STATES[{state}].{name}")));
         let _ = writeln!(text, "    [\"{name}\", {state}, {call}, [{}]],", list(&value.entries, kit.real));
     }
     text + "];\n\n" + &template(include_str!("template.mjs"), "//", kit)
@@ -90,7 +99,7 @@ fn python(kit: &Kit, module: &str) -> String {
     text += "]\n\n\ndef values():\n    \"\"\"Function, number of the state, value on this machine, value from the equations.\"\"\"\n    return [\n";
     for value in &kit.values {
         let (name, state) = (&value.name, value.state);
-        let call = format!("robot.{name}({})", arguments(value, &|name| format!("STATES[{state}][\"{name}\"]")));
+        let call = format!("robot.{name}({})", arguments(kit, value, &|name| format!("STATES[{state}][\"{name}\"]")));
         let _ = writeln!(text, "        (\"{name}\", {state}, {call}, [{}]),", list(&value.entries, kit.real));
     }
     text + "    ]\n\n\n" + &template(include_str!("template.py"), "#", kit)
@@ -110,7 +119,7 @@ fn matlab(kit: &Kit, module: &str, comment: &str) -> String {
     }
     for value in &kit.values {
         let (name, state) = (camel(&value.name), value.state + 1);
-        let call = format!("{module}.{name}({})", arguments(value, &|name| format!("states.{name}(:, {state})")));
+        let call = format!("{module}.{name}({})", arguments(kit, value, &|name| format!("states.{name}(:, {state})")));
         let results: Vec<String> = (1..=value.promise.returned.named().len()).map(|k| format!("r{k}")).collect();
         let found: Vec<String> = results.iter().map(|result| format!("byRows({result})")).collect();
         let _ = writeln!(text, "    [{}] = {call};", results.join(", "));
@@ -130,10 +139,13 @@ fn c(kit: &Kit, module: &str) -> String {
     // Base parameters are omitted, because the functions without them are tested.
     let with = kit.values.iter().any(|value| value.with);
     for (name, _) in named(&kit.states[0]).into_iter().filter(|(name, _)| with || *name != "pi") {
-        let length = if name == "pi" { "ROBOT_PARAMETERS" } else { "ROBOT_DOF" };
+        let length = of_macro(Argument::named(name).map_or(Length::Dof, Argument::length));
         let rows = kit.states.iter().filter_map(|state| named(state).into_iter().find(|(other, _)| *other == name));
         let rows: Vec<String> = rows.map(|(_, values)| format!("{{{}}}", numbers(values))).collect();
         let _ = writeln!(text, "static const robot_real state_{name}[{}][{length}] = {{{}}};", kit.states.len(), rows.join(", "));
+    }
+    if kit.sizes.gravity {
+        let _ = writeln!(text, "static const robot_real free_fall[3] = {{{}}};", numbers(&[1.5, -2.25, 9.5]));
     }
     text += "\nstatic void values(void);\n\n";
     let template = template(include_str!("template.c"), "/*", kit);
@@ -145,7 +157,7 @@ fn c(kit: &Kit, module: &str) -> String {
     }
     for value in &kit.values {
         let (name, state) = (&value.name, value.state);
-        let mut call = arguments(value, &|name| format!("state_{name}[{state}]"));
+        let mut call = arguments(kit, value, &|name| format!("state_{name}[{state}]"));
         let parts = value.promise.returned.named();
         let number = parts.len() == 1 && parts[0].1.is_empty();
         let mut at = 0;

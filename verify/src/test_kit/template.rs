@@ -10,6 +10,7 @@ struct Arguments {
     ddqr: [Real; DOF],
     tau: [Real; DOF],
     pi: [Real; PARAMETERS],
+    g0: [Real; 3], // with gravity as an argument
 }
 
 /// All entries in a row.
@@ -73,6 +74,9 @@ const DIFFERENCES: Real = 1e3 * STEP * STEP;
 /// A power of two near the cube root of epsilon.
 const STEP: Real = if Real::MANTISSA_DIGITS > 24 { 1.0 / 131_072.0 } else { 1.0 / 128.0 };
 
+/// Acceleration of free fall of the identities. // with gravity as an argument
+const FREE_FALL: [Real; 3] = [1.5, -2.25, 9.5]; // with gravity as an argument
+ // with gravity as an argument
 /// A row of random states: the same on every machine.
 fn random_states() -> Vec<Arguments> {
     let mut bits = 0x9e37_79b9_7f4a_7c15_u64;
@@ -88,6 +92,7 @@ fn random_states() -> Vec<Arguments> {
         ddqr: core::array::from_fn(|_| uniform(4.0)),
         tau: core::array::from_fn(|_| uniform(20.0)),
         pi: NOMINAL_PARAMETERS,
+        g0: FREE_FALL, // with gravity as an argument
     };
     (0..50).map(state).collect()
 }

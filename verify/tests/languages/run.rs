@@ -43,13 +43,9 @@ pub(crate) struct Robot {
 
 impl Robot {
     fn of(module: &Module, scalar: Scalar) -> Robot {
-        let integer = |name: &str| match module.constants.get(name) {
-            Some(Constant::Integer(value)) => *value as usize,
-            _ => 0,
-        };
         let Constant::Text(name) = &module.constants["NAME"] else { panic!("a robot has a name") };
-        let (dof, parameters) = (integer("DOF"), integer("PARAMETERS"));
-        let sizes = Sizes { n: dof, p: parameters, b: integer("BASE_PARAMETERS"), m: integer("TASK_ROWS") };
+        let sizes = module.sizes();
+        let (dof, parameters) = (sizes.n, sizes.p);
         let of_joints = |k: usize| parameters + k * dof..parameters + (k + 1) * dof;
         let called = |(name, program): (&str, &armgen_verify::program::Program)| {
             let promise = Promise::of(name).expect("a known function").0;
@@ -61,6 +57,7 @@ impl Robot {
                 Argument::Dqr => of_joints(3),
                 Argument::Ddqr => of_joints(4),
                 Argument::Tau => of_joints(5),
+                Argument::Gravity => parameters + 6 * dof..parameters + 6 * dof + 3,
             };
             let places = promise.returned.places(&sizes);
             let entries = |part: &str| places.iter().filter(|place| promise.returned.part_of(place).0 == part).count();
@@ -106,9 +103,9 @@ impl Robot {
         bytes
     }
 
-    /// Number of values in a state: the parameters, and six vectors of the joints.
+    /// Number of values in a state: the parameters, six vectors of the joints, and the acceleration of free fall.
     pub(crate) fn numbers_of_state(&self) -> usize {
-        self.parameters + 6 * self.dof
+        self.parameters + 6 * self.dof + 3
     }
 
     pub(crate) fn dimension(&self, length: Length) -> usize {

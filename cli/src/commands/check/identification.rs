@@ -9,6 +9,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use armgen_codegen::derive::base::{base_parameters, dependence, rank, regressor_of, Dependence};
 use armgen_codegen::derive::parameters::ParameterKind;
 use armgen_codegen::exact::Number;
+use armgen_codegen::manipulator::Manipulator;
 use armgen_codegen::Model;
 
 use super::decimal;
@@ -26,8 +27,18 @@ pub(super) fn report(model: &Model) -> String {
     let base = base_parameters(&model.manipulator, &model.field);
     let (pool, y) = regressor_of(&model.manipulator, &model.field, &base);
     let rank = rank(&pool, &y);
+    let directions = if model.manipulator.gravity_is_argument { of_directions(&model.manipulator, rank) } else { String::new() };
     let has_all = matches!(model.parameters.kind, ParameterKind::Base(_));
-    of_regressor(model, rank) + &of_base_regressor(model, base.len(), rank, has_all)
+    of_regressor(model, rank) + &directions + &of_base_regressor(model, base.len(), rank, has_all)
+}
+
+/// What the nominal gravity alone would leave of the `rank` combinations that gravity in all directions shows.
+fn of_directions(manipulator: &Manipulator, rank: usize) -> String {
+    let fixed = Model::new(Manipulator { gravity_is_argument: false, ..manipulator.clone() });
+    let base = base_parameters(&fixed.manipulator, &fixed.field);
+    let (pool, y) = regressor_of(&fixed.manipulator, &fixed.field, &base);
+    let alone = self::rank(&pool, &y);
+    format!("\n  The {rank} are those under gravity in all directions; under the nominal gravity alone they would be {alone}.\n")
 }
 
 /// A line about `base_regressor` if it has fewer columns than the `rank` that a motion can identify. `all` counts all base parameters; it

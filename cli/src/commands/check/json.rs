@@ -51,6 +51,7 @@ fn of_arm(arm: &Manipulator) -> Value {
     json!({
         "robot": arm.name,
         "gravity": arm.gravity.each_ref().map(number),
+        "gravity_is_argument": arm.gravity_is_argument,
         "joints": joints,
         "payload": arm.payload.as_ref().map(|load| number(&load.body.mass)),
         "task": arm.task.iter().map(|row| row.name()).collect::<Vec<_>>(),

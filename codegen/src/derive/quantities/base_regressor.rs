@@ -10,7 +10,7 @@ use crate::derive::regressor::STARTS;
 pub static BASE_REGRESSOR: Quantity = Quantity {
     name: "base_regressor",
     symbol: Typeset::new("Y_b(q, dq, ddq)", "Y_b(q, \\dot q, \\ddot q)"),
-    arguments: &[Argument::Q, Argument::Dq, Argument::Ddq],
+    arguments: &[Argument::Gravity, Argument::Q, Argument::Dq, Argument::Ddq],
     result: &[ResultPart::whole(Typeset::new("Y_b(q, dq, ddq)", "Y_b(q, \\dot q, \\ddot q)"), Typeset::plain("y_b"), &[Length::Dof, Length::BaseParameters], "Y_b pi_b is a torque")],
     structure: None,
     has_parameters: false,

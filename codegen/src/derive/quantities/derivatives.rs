@@ -53,7 +53,7 @@ pub(super) static DECLARED: [&Quantity; 2] = [&INVERSE_DYNAMICS_DERIVATIVES, &FO
 pub static INVERSE_DYNAMICS_DERIVATIVES: Quantity = Quantity {
     name: "inverse_dynamics_derivatives",
     symbol: Typeset::new("dtau/dq, dtau/d(dq)", "\\partial\\tau/\\partial q, \\partial\\tau/\\partial\\dot q"),
-    arguments: &[Argument::Q, Argument::Dq, Argument::Ddq],
+    arguments: &[Argument::Gravity, Argument::Q, Argument::Dq, Argument::Ddq],
     result: &[
         ResultPart {
             name: "by_q",
@@ -89,7 +89,7 @@ pub static INVERSE_DYNAMICS_DERIVATIVES: Quantity = Quantity {
 pub static FORWARD_DYNAMICS_DERIVATIVES: Quantity = Quantity {
     name: "forward_dynamics_derivatives",
     symbol: Typeset::new("d(ddq)/dq, d(ddq)/d(dq), B^-1", "\\partial\\ddot q/\\partial q, \\partial\\ddot q/\\partial\\dot q, B^{-1}"),
-    arguments: &[Argument::Q, Argument::Dq, Argument::Tau],
+    arguments: &[Argument::Gravity, Argument::Q, Argument::Dq, Argument::Tau],
     result: &[
         ResultPart {
             name: "by_q",

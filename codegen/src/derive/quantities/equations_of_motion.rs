@@ -10,7 +10,7 @@ use crate::derive::quantity::{Argument, Documentation, Length, Quantity, Recursi
 pub static EQUATIONS_OF_MOTION: Quantity = Quantity {
     name: "equations_of_motion",
     symbol: Typeset::plain("B, C, g"),
-    arguments: &[Argument::Q, Argument::Dq],
+    arguments: &[Argument::Gravity, Argument::Q, Argument::Dq],
     result: &[
         ResultPart {
             name: "inertia",

@@ -21,7 +21,7 @@ pub(super) static DECLARED: [&Quantity; 2] = [&POTENTIAL_ENERGY, &CENTER_OF_MASS
 pub static POTENTIAL_ENERGY: Quantity = Quantity {
     name: "potential_energy",
     symbol: Typeset::new("U(q)", "\\mathcal U(q)"),
-    arguments: &[Argument::Q],
+    arguments: &[Argument::Gravity, Argument::Q],
     result: &[ResultPart::whole(Typeset::new("U(q)", "\\mathcal U(q)"), Typeset::new("U", "\\mathcal U"), &[], "J")],
     structure: None,
     has_parameters: true,

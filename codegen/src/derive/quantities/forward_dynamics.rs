@@ -14,7 +14,7 @@ use crate::ring::{ExprId, Pool, Symbol};
 pub static FORWARD_DYNAMICS: Quantity = Quantity {
     name: "forward_dynamics",
     symbol: Typeset::new("ddq(q, dq, tau)", "\\ddot q(q, \\dot q, \\tau)"),
-    arguments: &[Argument::Q, Argument::Dq, Argument::Tau],
+    arguments: &[Argument::Gravity, Argument::Q, Argument::Dq, Argument::Tau],
     result: &[ResultPart::whole(
         Typeset::new("ddq(q, dq, tau)", "\\ddot q(q, \\dot q, \\tau)"),
         Typeset::new("ddq", "\\ddot q"),

@@ -20,7 +20,7 @@ use crate::ring::{ExprId, Pool};
 pub static GRAVITY: Quantity = Quantity {
     name: "gravity",
     symbol: Typeset::plain("g(q)"),
-    arguments: &[Argument::Q],
+    arguments: &[Argument::Gravity, Argument::Q],
     result: &[ResultPart::whole(Typeset::plain("g(q)"), Typeset::plain("g"), &[Length::Dof], "N m or N")],
     structure: None,
     has_parameters: true,

@@ -9,7 +9,7 @@ use crate::derive::quantity::{Argument, Documentation, Length, Quantity, Recursi
 pub static INVERSE_DYNAMICS: Quantity = Quantity {
     name: "inverse_dynamics",
     symbol: Typeset::new("tau(q, dq, ddq)", "\\tau(q, \\dot q, \\ddot q)"),
-    arguments: &[Argument::Q, Argument::Dq, Argument::Ddq],
+    arguments: &[Argument::Gravity, Argument::Q, Argument::Dq, Argument::Ddq],
     result: &[ResultPart::whole(
         Typeset::new("tau(q, dq, ddq)", "\\tau(q, \\dot q, \\ddot q)"),
         Typeset::new("tau", "\\tau"),

@@ -19,7 +19,7 @@ use crate::ring::{ExprId, Pool, Symbol};
 pub static LOAD_FRICTION: Quantity = Quantity {
     name: "load_friction",
     symbol: Typeset::new("F_l(q, dq)", "F_l(q, \\dot q)"),
-    arguments: &[Argument::Q, Argument::Dq],
+    arguments: &[Argument::Gravity, Argument::Q, Argument::Dq],
     result: &[ResultPart::whole(
         Typeset::new("F_l(q, dq)", "F_l(q, \\dot q)"),
         Typeset::new("fl", "f_l"),

@@ -15,7 +15,7 @@ pub(super) static DECLARED: [&Quantity; 2] = [&REGRESSOR, &KNOWN_TORQUE];
 pub static REGRESSOR: Quantity = Quantity {
     name: "regressor",
     symbol: Typeset::new("Y(q, dq, dqr, ddqr)", "Y(q, \\dot q, \\dot q_r, \\ddot q_r)"),
-    arguments: &[Argument::Q, Argument::Dq, Argument::Dqr, Argument::Ddqr],
+    arguments: &[Argument::Gravity, Argument::Q, Argument::Dq, Argument::Dqr, Argument::Ddqr],
     result: &[ResultPart::whole(Typeset::new("Y(q, dq, dqr, ddqr)", "Y(q, \\dot q, \\dot q_r, \\ddot q_r)"), Typeset::plain("y"), &[Length::Dof, Length::Parameters], "Y pi is a torque")],
     structure: None,
     has_parameters: false,
@@ -38,7 +38,7 @@ pub static REGRESSOR: Quantity = Quantity {
 pub static KNOWN_TORQUE: Quantity = Quantity {
     name: "known_torque",
     symbol: Typeset::new("tau_known(q, dq, dqr, ddqr)", "\\tau_0(q, \\dot q, \\dot q_r, \\ddot q_r)"),
-    arguments: &[Argument::Q, Argument::Dq, Argument::Dqr, Argument::Ddqr],
+    arguments: &[Argument::Gravity, Argument::Q, Argument::Dq, Argument::Dqr, Argument::Ddqr],
     result: &[ResultPart::whole(
         Typeset::new("tau_known(q, dq, dqr, ddqr)", "\\tau_0(q, \\dot q, \\dot q_r, \\ddot q_r)"),
         Typeset::new("tau_known", "\\tau_0"),

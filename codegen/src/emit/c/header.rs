@@ -128,6 +128,11 @@ pub(super) fn macros(module: &Module) -> String {
         text += "\n";
         text += &parameters_comment(&described);
     }
+    if module.gravity_is_argument {
+        let nominal = module.gravity.iter().map(|component| constant(component, module.scalar)).collect();
+        text += "\n/* Acceleration of free fall in the description, in the base frame, m/s². */\n";
+        let _ = writeln!(text, "#define {upper}_NOMINAL_GRAVITY {}", braces(nominal));
+    }
     if !module.base_set.is_empty() {
         let names = module.base_set.iter().map(|parameter| format!("\"{}\"", parameter.name)).collect();
         let nominal = module.base_set.iter().map(|parameter| constant(&parameter.nominal, module.scalar)).collect();

@@ -76,9 +76,12 @@ pub fn print_inverse_kinematics_trait(module: &Module, found: &Result<InverseKin
         }
     };
     let nominal = implementation(quote!(Nominal));
-    let with_parameters = is_implemented(module, "Dynamics").then(|| implementation(quote!(WithParameters)));
+    let has_dynamics = is_implemented(module, "Dynamics");
+    let mounted = (has_dynamics && module.gravity_is_argument).then(|| implementation(quote!(Mounted)));
+    let with_parameters = has_dynamics.then(|| implementation(quote!(WithParameters)));
     let text = quote! {
         #nominal
+        #mounted
         #with_parameters
 
         /// The postures that the module of inverse kinematics finds, in the runtime's types. No parameter enters them.

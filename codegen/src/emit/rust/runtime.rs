@@ -18,38 +18,79 @@ pub(super) fn implementation(module: &Module) -> Option<TokenStream> {
         return None;
     }
     let doc = format!(" The robot `{}` as described.", module.name);
-    let nominal = traits(module, &quote!(Nominal), false);
-    let (chosen, with_parameters) = if is_implemented(module, "Dynamics") {
-        (with_parameters_type(), traits(module, &quote!(WithParameters), true))
-    } else {
-        (quote!(), quote!())
-    };
+    let has_dynamics = is_implemented(module, "Dynamics");
+    let mounted = (has_dynamics && module.gravity_is_argument).then_some(&MOUNTED);
+    let others: Vec<&Robot> = mounted.into_iter().chain(has_dynamics.then_some(&WITH_PARAMETERS)).collect();
+    let types = others.iter().map(|robot| type_of_robot(module, robot));
+    let traits = [&NOMINAL].into_iter().chain(others.iter().copied()).map(|robot| traits(module, robot));
     Some(quote! {
         #[doc = #doc]
         #[allow(dead_code)]
         #[derive(Clone, Copy, Debug, Default, PartialEq)]
         pub struct Nominal;
 
-        #chosen
-        #nominal
-        #with_parameters
+        #(#types)*
+        #(#traits)*
     })
 }
 
-fn with_parameters_type() -> TokenStream {
-    quote! {
-        /// The same robot with other parameters, in the order of `PARAMETER_NAMES`.
-        #[allow(dead_code)]
-        #[derive(Clone, Copy, Debug, PartialEq)]
-        pub struct WithParameters {
+/// A robot that implements the traits: what it holds of its own, and does not take from the description.
+struct Robot {
+    name: &'static str,
+    title: &'static str,
+    default: &'static str,
+    parameters: bool,
+    gravity: bool,
+}
+
+const NOMINAL: Robot = Robot { name: "Nominal", title: "", default: "", parameters: false, gravity: false };
+
+const MOUNTED: Robot = Robot {
+    name: "Mounted",
+    title: " The same robot under another gravity: mounted another way, or on a base that accelerates.",
+    default: " The gravity of the description.",
+    parameters: false,
+    gravity: true,
+};
+
+const WITH_PARAMETERS: Robot = Robot {
+    name: "WithParameters",
+    title: " The same robot with other parameters, in the order of `PARAMETER_NAMES`.",
+    default: " The parameters of the description.",
+    parameters: true,
+    gravity: true,
+};
+
+fn type_of_robot(module: &Module, robot: &Robot) -> TokenStream {
+    let (name, title, default) = (format_ident!("{}", robot.name), robot.title, robot.default);
+    let parameters = robot.parameters.then(|| {
+        quote! {
             /// The parameter vector.
             pub parameters: [Real; PARAMETERS],
         }
+    });
+    let has_gravity = robot.gravity && module.gravity_is_argument;
+    let gravity = has_gravity.then(|| {
+        quote! {
+            /// Acceleration of free fall in the base frame, m/s².
+            pub gravity: [Real; 3],
+        }
+    });
+    let parameters_of_default = robot.parameters.then(|| quote!(parameters: NOMINAL_PARAMETERS,));
+    let gravity_of_default = has_gravity.then(|| quote!(gravity: NOMINAL_GRAVITY,));
+    quote! {
+        #[doc = #title]
+        #[allow(dead_code)]
+        #[derive(Clone, Copy, Debug, PartialEq)]
+        pub struct #name {
+            #parameters
+            #gravity
+        }
 
-        impl Default for WithParameters {
-            /// The parameters of the description.
+        impl Default for #name {
+            #[doc = #default]
             fn default() -> Self {
-                WithParameters { parameters: NOMINAL_PARAMETERS }
+                #name { #parameters_of_default #gravity_of_default }
             }
         }
     }
@@ -90,12 +131,13 @@ pub(super) fn is_implemented(module: &Module, interface: &str) -> bool {
     needed.into_iter().all(|name| lacking.iter().all(|(other, _)| *other != name))
 }
 
-fn traits(module: &Module, robot: &TokenStream, with_parameters: bool) -> TokenStream {
+fn traits(module: &Module, robot: &Robot) -> TokenStream {
+    let (name, with_parameters) = (format_ident!("{}", robot.name), robot.parameters);
     let parameters = if with_parameters { quote!(self.parameters) } else { quote!(NOMINAL_PARAMETERS) };
     let basic = BASIC.into_iter().filter(|interface| is_implemented(module, interface)).map(|interface| {
         // The others have a default in their trait.
         let there = |quantity: &&Quantity| quantity.documentation.said_missing || has(module, quantity, with_parameters);
-        let methods = methods(interface).filter(there).map(|quantity| method(quantity, with_parameters));
+        let methods = methods(interface).filter(there).map(|quantity| method(module, quantity, robot));
         let (lengths, first, last) = match interface {
             "Kinematics" => (
                 quote!(DOF),
@@ -116,7 +158,7 @@ fn traits(module: &Module, robot: &TokenStream, with_parameters: bool) -> TokenS
         };
         let interface = format_ident!("{interface}");
         quote! {
-            impl armgen_runtime::robot::#interface<#lengths> for #robot {
+            impl armgen_runtime::robot::#interface<#lengths> for #name {
                 #first
                 #(#methods)*
                 #last
@@ -129,10 +171,10 @@ fn traits(module: &Module, robot: &TokenStream, with_parameters: bool) -> TokenS
     let single = single().filter(|(quantity, _)| answers(quantity));
     let single = single.filter(|(quantity, _)| has(module, quantity, with_parameters && quantity.has_parameters));
     let single = single.map(|(quantity, interface)| {
-        let (interface, method) = (format_ident!("{interface}"), method(quantity, with_parameters));
+        let (interface, method) = (format_ident!("{interface}"), method(module, quantity, robot));
         let lengths = constants(quantity).into_iter().map(length);
         quote! {
-            impl armgen_runtime::robot::#interface<#(#lengths),*> for #robot {
+            impl armgen_runtime::robot::#interface<#(#lengths),*> for #name {
                 #method
             }
         }
@@ -173,7 +215,7 @@ pub fn single_traits() -> String {
         let title = format!(" The function `{}` of a robot.", quantity.name);
         let documentation = documentation::lines(&common::of_quantity(quantity));
         let lengths = constants(quantity).into_iter().map(generic);
-        let arguments = quantity.arguments.iter().map(|&a| {
+        let arguments = quantity.arguments_of(false, false).map(|a| {
             let (name, _) = argument(a);
             quote!(#name: &SVector<Self::Real, N>)
         });
@@ -196,26 +238,23 @@ pub fn single_traits() -> String {
         + &super::format(traits)
 }
 
-fn method(quantity: &Quantity, with_parameters: bool) -> TokenStream {
+fn method(module: &Module, quantity: &Quantity, robot: &Robot) -> TokenStream {
     let name = format_ident!("{}", quantity.name);
-    let run_time = with_parameters && quantity.has_parameters;
+    let run_time = robot.parameters && quantity.has_parameters;
     let called = format_ident!("{}", quantity.function_name(run_time));
-    let arguments = quantity.arguments.iter().map(|&a| {
+    let arguments = quantity.arguments_of(false, false).map(|a| {
         let (name, _) = argument(a);
         quote!(#name: &armgen_runtime::nalgebra::SVector<Real, DOF>)
     });
-    let mut passed: Vec<TokenStream> = quantity
-        .arguments
-        .iter()
-        .map(|&a| {
+    let passed = quantity.arguments_of(run_time, module.gravity_is_argument).map(|a| match a {
+        Argument::Pi => quote!(&self.parameters),
+        Argument::Gravity if robot.gravity => quote!(&self.gravity),
+        Argument::Gravity => quote!(&NOMINAL_GRAVITY),
+        _ => {
             let (name, _) = argument(a);
-            debug_assert!(a != Argument::Pi);
             quote!(armgen_runtime::robot::array(#name))
-        })
-        .collect();
-    if run_time {
-        passed.insert(0, quote!(&self.parameters));
-    }
+        }
+    });
     let call = quote!(#called(#(#passed),*));
     let own = |part: &ResultPart| part_type(part, &quote!(Real), &quote!(armgen_runtime::nalgebra::), length);
     let returns = of_parts(quantity, own, |name| quote!(armgen_runtime::robot::#name<Real, DOF>));

@@ -5,6 +5,7 @@ use std::collections::BTreeMap;
 use super::place::Place;
 use crate::contract::Sizes;
 use crate::enclosure::Float;
+use crate::program::NOMINAL_GRAVITY;
 use crate::reader::constant::Constant;
 use crate::reader::lexer::Fault;
 
@@ -37,7 +38,7 @@ pub(in crate::reader) enum Entry {
 }
 
 /// The permitted constants: name, kind of entries, and nesting depth of arrays.
-pub(in crate::reader) const CONSTANTS: [(&str, Entry, usize); 15] = [
+pub(in crate::reader) const CONSTANTS: [(&str, Entry, usize); 16] = [
     ("NAME", Entry::Text, 0),
     ("DOF", Entry::Integer, 0),
     ("JOINT_NAMES", Entry::Text, 1),
@@ -50,6 +51,7 @@ pub(in crate::reader) const CONSTANTS: [(&str, Entry, usize); 15] = [
     ("PARAMETERS", Entry::Integer, 0),
     ("PARAMETER_NAMES", Entry::Text, 1),
     ("NOMINAL_PARAMETERS", Entry::Real, 1),
+    (NOMINAL_GRAVITY, Entry::Real, 1),
     ("BASE_PARAMETERS", Entry::Integer, 0),
     ("BASE_PARAMETER_NAMES", Entry::Text, 1),
     ("NOMINAL_BASE_PARAMETERS", Entry::Real, 1),
@@ -125,5 +127,6 @@ pub(in crate::reader) fn sizes(constants: &BTreeMap<String, Constant>) -> Result
         p: of("PARAMETERS", MOST_ENTRIES)?,
         b: of("BASE_PARAMETERS", MOST_ENTRIES)?,
         m: of("TASK_ROWS", 6)?,
+        gravity: constants.contains_key(NOMINAL_GRAVITY),
     })
 }
