@@ -413,7 +413,7 @@ class Robot:
         if name in absent:
             reason = f": {absent[name]}"
         else:
-            words = [*self.functions, *absent, *(word for word in dir(type(self)) if not word.startswith("_"))]
+            words = [*absent, *(word for word in dir(self) if not word.startswith("_"))]
             meant = _native.meant(name, words)
             reason = f"; here it is `{meant}`" if meant else "; `functions` has the names of its functions"
         raise AttributeError(f"{own} has no `{name}`{reason}", name=name, obj=self)

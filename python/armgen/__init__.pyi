@@ -5,6 +5,7 @@ from typing import Any, Final, Iterable, Mapping, NamedTuple, NoReturn
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
+from typing_extensions import disjoint_base
 
 __version__: Final[str]
 
@@ -65,6 +66,7 @@ def loads(
     allow: Iterable[str] = (),
 ) -> Robot: ...
 
+@disjoint_base
 class Function:
     @property
     def __name__(self) -> str: ...

@@ -7,7 +7,7 @@ import sys
 
 
 def main() -> None:
-    from . import _native
+    from . import _native  # type: ignore[attr-defined]
 
     # Interrupts end the program, as they end others; Python would only note them until the command returns.
     signal.signal(signal.SIGINT, signal.SIG_DFL)

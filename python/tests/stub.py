@@ -11,6 +11,7 @@ from typing import Any, Final, Iterable, Mapping, NamedTuple, NoReturn
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
+from typing_extensions import disjoint_base
 
 __version__: Final[str]
 
@@ -71,6 +72,7 @@ def loads(
     allow: Iterable[str] = (),
 ) -> Robot: ...
 
+@disjoint_base
 class Function:
     @property
     def __name__(self) -> str: ...
