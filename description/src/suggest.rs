@@ -22,7 +22,7 @@ pub fn did_you_mean<'w>(found: &str, words: &[&'w str]) -> Option<&'w str> {
     ranked.min_by_key(|(d, word)| (*d, letters(word) != own)).map(|(_, word)| word)
 }
 
-/// Names of functions in Pinocchio, MuJoCo, the Robotics Toolbox and books, and their names here.
+/// Names of functions in Pinocchio, MuJoCo, the Robotics Toolbox, Drake and books, and their names here.
 const OTHER_WORDS: &[(&str, &str)] = &[
     ("M", "inertia_matrix"),
     ("B", "inertia_matrix"),
@@ -34,6 +34,7 @@ const OTHER_WORDS: &[(&str, &str)] = &[
     ("crba", "inertia_matrix"),
     ("mj_crb", "inertia_matrix"),
     ("mj_fullM", "inertia_matrix"),
+    ("CalcMassMatrix", "inertia_matrix"),
     ("C", "coriolis_matrix"),
     ("coriolis", "coriolis_matrix"),
     ("compute_coriolis_matrix", "coriolis_matrix"),
@@ -44,12 +45,17 @@ const OTHER_WORDS: &[(&str, &str)] = &[
     ("gravity_vector", "gravity"),
     ("compute_generalized_gravity", "gravity"),
     ("computeGeneralizedGravity", "gravity"),
+    ("CalcGravityGeneralizedForces", "gravity"),
     ("J", "geometric_jacobian"),
     ("jacobian", "geometric_jacobian"),
     ("jacob0", "geometric_jacobian"),
     ("mj_jac", "geometric_jacobian"),
     ("get_frame_jacobian", "geometric_jacobian"),
     ("getFrameJacobian", "geometric_jacobian"),
+    ("computeFrameJacobian", "geometric_jacobian"),
+    ("CalcJacobianSpatialVelocity", "geometric_jacobian"),
+    ("getFrameJacobianTimeVariation", "geometric_jacobian_dot"),
+    ("jacob_dot", "geometric_jacobian_dot"),
     ("fk", "direct_kinematics"),
     ("fkine", "direct_kinematics"),
     ("forward_kinematics", "direct_kinematics"),
@@ -60,14 +66,23 @@ const OTHER_WORDS: &[(&str, &str)] = &[
     ("rnea", "inverse_dynamics"),
     ("mj_rne", "inverse_dynamics"),
     ("mj_inverse", "inverse_dynamics"),
+    ("CalcInverseDynamics", "inverse_dynamics"),
+    ("nle", "inverse_dynamics"),
+    ("nonLinearEffects", "inverse_dynamics"),
+    ("computeRNEADerivatives", "inverse_dynamics_derivatives"),
     ("id", "inverse_dynamics"),
     ("aba", "forward_dynamics"),
     ("accel", "forward_dynamics"),
     ("fd", "forward_dynamics"),
     ("mj_forward", "forward_dynamics"),
+    ("computeABADerivatives", "forward_dynamics_derivatives"),
     ("ik", "inverse_kinematics"),
     ("ikine", "inverse_kinematics"),
     ("Y", "regressor"),
+    ("computeJointTorqueRegressor", "regressor"),
+    ("computeKineticEnergy", "kinetic_energy"),
+    ("computePotentialEnergy", "potential_energy"),
+    ("centerOfMass", "center_of_mass"),
     ("det", "determinant"),
 ];
 
@@ -133,6 +148,7 @@ mod tests {
             ("jacobian", "geometric_jacobian"),
             ("rnea", "inverse_dynamics"),
             ("aba", "forward_dynamics"),
+            ("CalcMassMatrix", "inertia_matrix"),
             ("RNEA", "inverse_dynamics"),
             ("gravty", "gravity"),
         ] {

@@ -88,7 +88,7 @@ fn checked(file: &Path, doubts: &Doubts, full: bool) -> Result<(String, u8), u8>
     let model = Model::new(manipulator);
     let (summary, too_large) = with_spinner("deriving", || {
         both(
-            || summary(&source, &description, &model, &diagnostics, full),
+            || text(&source, &description, &model, &diagnostics, full),
             // Only its programs show whether products of valid numbers still fit the scalar.
             || armgen_codegen::programs(&model, &places, &Options::default()).err(),
         )
@@ -109,7 +109,16 @@ fn checked(file: &Path, doubts: &Doubts, full: bool) -> Result<(String, u8), u8>
     } else {
         DONE
     };
-    Ok((summary, code))
+    let (title, rest) = summary.split_once('\n').unwrap_or((&summary, ""));
+    Ok((format!("{}\n{rest}", terminal::bold(title, &std::io::stdout())), code))
+}
+
+/// The summary of a valid description, without marks for a terminal; `None` if it is faulty.
+pub fn summary(source: &Source, allow: &[String], full: bool) -> Option<String> {
+    let (valid, mut diagnostics) = validate::read_for(source, Scalar::F64);
+    diagnostics.allow(allow);
+    let description = RobotDescription::parse(source).0.unwrap_or_default();
+    Some(text(source, &description, &Model::new(valid?.0), &diagnostics, full))
 }
 
 /// The comparison that is left to the reader.
@@ -119,13 +128,13 @@ const ADVICE: &str =
 /// The tables that the short summary leaves out.
 const MORE: &str = "  `--full` adds limits, drives, inertias as boxes, frames, and what a motion can identify.\n";
 
-fn summary(source: &Source, description: &RobotDescription, model: &Model, diagnostics: &Diagnostics, full: bool) -> String {
+fn text(source: &Source, description: &RobotDescription, model: &Model, diagnostics: &Diagnostics, full: bool) -> String {
     let manipulator = &model.manipulator;
     let verdict = match diagnostics.warnings() {
         0 => "valid".to_string(),
         warnings => format!("valid, with {}", input::counted(warnings, "warning")),
     };
-    let title = terminal::bold(&format!("{}: {verdict}", source.name()), &std::io::stdout());
+    let title = format!("{}: {verdict}", source.name());
     let distances = posture::distances(manipulator);
     let parts = match full {
         true => vec![

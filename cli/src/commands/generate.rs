@@ -4,12 +4,13 @@ use std::collections::BTreeSet;
 use std::io::ErrorKind;
 use std::path::{Path, PathBuf};
 
+use armgen_codegen::catalogue::Absent;
 use armgen_codegen::diagnostic::Colour;
 use armgen_codegen::emit::{Language, Origin};
 use armgen_codegen::kinds::Scalar;
 use armgen_codegen::pass::Pass;
 use armgen_codegen::program::Trig;
-use armgen_codegen::schedule::Options;
+use armgen_codegen::schedule::{Options, Selection};
 use armgen_codegen::source::Source;
 use armgen_codegen::validate;
 use armgen_codegen::Generated;
@@ -85,6 +86,28 @@ pub(crate) struct Beside {
     check: bool,
 }
 
+impl Choices {
+    /// As the generator takes them; an error names functions that do not exist.
+    fn options(&self) -> Result<Options, String> {
+        let functions = match self.functions.as_slice() {
+            [] => Selection::ALL,
+            names => Selection::named(names).map_err(|unknown| unknown.to_string())?,
+        };
+        let scalar = match self.scalar {
+            ScalarName::F64 => Scalar::F64,
+            ScalarName::F32 => Scalar::F32,
+        };
+        let trig = match self.trig {
+            None => Trig::of_language(self.language),
+            Some(TrigName::Libm) => Trig::Libm,
+            Some(TrigName::Std) => Trig::Std,
+            Some(TrigName::Fast) => Trig::Fast,
+        };
+        let (without, batch) = (self.without.iter().copied().collect(), self.batch.map(usize::from));
+        Ok(Options { scalar, trig, without, batch, functions, fuse: self.fma })
+    }
+}
+
 impl Beside {
     /// The given options that need a file for the module.
     fn flags(&self) -> Vec<&'static str> {
@@ -102,18 +125,14 @@ impl Beside {
 }
 
 pub(crate) fn run(file: &Path, out: Option<&Path>, choices: &Choices, beside: &Beside, manifest: &Manifest) -> u8 {
-    let Some(functions) = input::selection(&choices.functions) else { return UNREADABLE };
-    let scalar = match choices.scalar {
-        ScalarName::F64 => Scalar::F64,
-        ScalarName::F32 => Scalar::F32,
+    let options = match choices.options() {
+        Ok(options) => options,
+        Err(unknown) => {
+            terminal::error(&unknown);
+            return UNREADABLE;
+        }
     };
-    let language = choices.language;
-    let trig = match choices.trig {
-        None => Trig::of_language(language),
-        Some(TrigName::Libm) => Trig::Libm,
-        Some(TrigName::Std) => Trig::Std,
-        Some(TrigName::Fast) => Trig::Fast,
-    };
+    let (language, scalar, trig, functions) = (choices.language, options.scalar, options.trig, &options.functions);
     if manifest.package && language != Language::C {
         terminal::error("--package goes with `--language c`: it is a package of the header for CMake and ROS 2");
         return UNREADABLE;
@@ -143,15 +162,12 @@ pub(crate) fn run(file: &Path, out: Option<&Path>, choices: &Choices, beside: &B
         Ok(source) => source,
         Err(code) => return code,
     };
-    let without = choices.without.iter().copied().collect();
-    let batch = choices.batch.map(usize::from);
-    let options = Options { scalar, trig, without, batch, functions: functions.clone(), fuse: choices.fma };
     let (generated, diagnostics) = armgen_codegen::generate(&source, &options);
     let mut generated = match input::report_or_exit_code(&source, generated, &diagnostics, input::Warnings::Counted) {
         Ok(generated) => generated,
         Err(code) => return code,
     };
-    if !input::all_there(source.name(), &generated.absent, &functions) {
+    if !input::all_there(source.name(), &generated.absent, functions) {
         return FAULTY;
     }
     if let Some(reason) = generated.no_inverse_kinematics().filter(|_| beside.ik) {
@@ -208,6 +224,40 @@ pub(crate) fn run(file: &Path, out: Option<&Path>, choices: &Choices, beside: &B
     }
     warn_of_stale(&source, language, out, beside, &files);
     DONE
+}
+
+/// The files of a module, by their names; or why there are none.
+pub(crate) fn in_memory(
+    source: &Source,
+    out: &Path,
+    choices: &Choices,
+    beside: &Beside,
+    manifest: &Manifest,
+) -> Result<Vec<(String, String)>, String> {
+    if manifest.package || beside.check {
+        return Err("--package and --check are of files on a disk".to_owned());
+    }
+    let options = choices.options()?;
+    if let Some(reason) = unfit(choices.language, options.scalar, options.trig, Some(out), choices, beside) {
+        return Err(reason);
+    }
+    let (generated, diagnostics) = armgen_codegen::generate(source, &options);
+    let mut generated = generated.ok_or_else(|| diagnostics.render(source, Colour::Never))?;
+    let absent = generated.absent.first().filter(|_| !options.functions.is_all());
+    if let Some(Absent { function, reason }) = absent {
+        return Err(format!("there is no `{function}` of this arm: {reason}"));
+    }
+    if let Some(reason) = generated.no_inverse_kinematics().filter(|_| beside.ik) {
+        return Err(format!("there is no inverse kinematics: {reason}"));
+    }
+    if choices.batch.is_none() {
+        // Without them the documentation is shorter.
+        let _ = armgen_certify::document_bounds(source, &mut generated);
+    }
+    let scalar = options.scalar;
+    let made = files(&Requested { source, generated: &generated, language: choices.language, scalar, out, beside })?;
+    let name = |path: PathBuf| path.file_name().unwrap_or_default().to_string_lossy().into_owned();
+    Ok(made.into_iter().map(|(path, text)| (name(path), text)).collect())
 }
 
 /// Compares files with what would be written, and names those that differ.

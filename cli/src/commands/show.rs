@@ -68,14 +68,19 @@ fn inverse_kinematics(model: &Model, otherwise: bool) -> u8 {
     terminal::print(&steps_of_inverse_kinematics(model))
 }
 
-fn steps_of_inverse_kinematics(model: &Model) -> String {
+/// The class of an arm's inverse kinematics and its steps.
+pub fn steps_of_inverse_kinematics(model: &Model) -> String {
     match armgen_codegen::inverse_kinematics::of(&model.manipulator) {
         Ok(found) => found.text(),
         Err(reason) => format!("{INVERSE_KINEMATICS}: none, {reason}\n"),
     }
 }
 
-fn items(model: &Model, quantities: &[String]) -> Result<Vec<Item>, String> {
+/// The items of names, all if there are none.
+///
+/// # Errors
+/// A name that no quantity has, with the nearest.
+pub fn items(model: &Model, quantities: &[String]) -> Result<Vec<Item>, String> {
     if quantities.is_empty() {
         return Ok(Item::all());
     }

@@ -1,0 +1,496 @@
+"""A robot arm's exact equations of motion, from its description, URDF or MuJoCo model, as functions over arrays of NumPy.
+
+    robot = armgen.load("robot.yaml")
+    robot.inverse_dynamics(q, dq, ddq)
+
+`robot.functions` has the names of all functions; the documentation of each is its `__doc__`.
+"""
+
+from __future__ import annotations
+
+import os
+from collections import namedtuple as _namedtuple
+from typing import Any, Iterable, Mapping, NamedTuple
+
+import numpy as _numpy
+
+from . import _native
+
+__version__ = _native.VERSION
+
+# The longest file that is read, in bytes.
+_LONGEST = 32 << 20
+
+# Beside angles nearer than so much (rad) a multiple of pi/12 is meant.
+_SNAP = 2e-5
+
+
+class Label(NamedTuple):
+    """A place in a text and what is there. Lines and columns count from 1, columns in characters."""
+
+    text: str
+    line: int
+    column: int
+    end_line: int
+    end_column: int
+
+
+class Diagnostic(NamedTuple):
+    """A fault or a doubt of a text: its code, `"error"` or `"warning"`, what is wrong, what to do, and where it is."""
+
+    code: str
+    severity: str
+    message: str
+    help: str
+    line: int
+    column: int
+    end_line: int
+    end_column: int
+    labels: tuple[Label, ...]
+    file: str
+
+
+class DescriptionError(ValueError):
+    """A text that is no arm. `diagnostics` has all that is wrong with it, `source` the text that their places are of."""
+
+    def __init__(self, text: str, diagnostics: tuple[Diagnostic, ...] = (), source: str = "") -> None:
+        super().__init__(text)
+        self.diagnostics = diagnostics
+        self.source = source
+
+    def __str__(self) -> str:
+        return "\n" + str(self.args[0])
+
+    def __reduce__(self) -> Any:
+        return DescriptionError, (self.args[0], self.diagnostics, self.source)
+
+
+class InternalError(RuntimeError):
+    """A fault of armgen itself, not of its input."""
+
+    def __init__(self, said: str) -> None:
+        super().__init__(said)
+
+    def __str__(self) -> str:
+        return (
+            f"a fault of armgen {__version__}, not of its input: {self.args[0]}; "
+            "please report it with the description and the call"
+        )
+
+
+def _structures_of_catalogue() -> dict[str, Any]:
+    structures = {}
+    for name, _, _, parts, _ in _native.catalogue_of_functions():
+        plain = name.removesuffix("_with")
+        if len(parts) > 1 and plain not in structures:
+            words = plain.split("_")
+            made = _namedtuple("".join(map(str.capitalize, words)), parts, module=__name__)  # type: ignore[misc]
+            made.__doc__ = f"Results of `{plain}`."
+            structures[plain] = made
+    return structures
+
+
+# The types of several results, as the emitted module in Python has them.
+_structures = _structures_of_catalogue()
+globals().update({_made.__name__: _made for _made in _structures.values()})
+
+Function = _native.Function
+
+
+def load(
+    path: str | os.PathLike[str],
+    *,
+    base: str | None = None,
+    tip: str | None = None,
+    lock: Mapping[str, str | int | float] | None = None,
+    name: str | None = None,
+    snap: float | None = None,
+    massless: bool = False,
+    inertia_as_written: bool = False,
+    strict: bool = False,
+    allow: Iterable[str] = (),
+    arguments: Mapping[str, str] | None = None,
+    packages: Mapping[str, str | os.PathLike[str]] | None = None,
+) -> Robot:
+    """The arm of a file: a description (robot.yaml), a URDF, a MuJoCo model, or a file of xacro.
+
+    base, tip, lock, name, snap, massless, inertia_as_written: options of the import of a URDF or a MuJoCo model, as `armgen import` has
+    them. strict: warnings are faults. allow: kinds of warnings that are not given. arguments, packages: of xacro, the values of its
+    arguments and the folders of its packages.
+
+    Raises DescriptionError with all that is wrong with the file, OSError if it cannot be read.
+    """
+    path = os.fspath(path)
+    if path.endswith(".xacro"):
+        text = _written_out(path, arguments, packages)
+    else:
+        if arguments is not None or packages is not None:
+            raise TypeError("arguments and packages are options of a file of xacro")
+        with open(path, "rb") as file:
+            data = file.read(_LONGEST + 1)
+        text = _decoded(path, data)
+    asked = _asked(base, tip, lock, name, snap, massless, inertia_as_written, strict, allow)
+    return _read(path, text, os.path.dirname(path), asked)
+
+
+def loads(
+    text: str,
+    name: str = "robot.yaml",
+    *,
+    base: str | None = None,
+    tip: str | None = None,
+    lock: Mapping[str, str | int | float] | None = None,
+    snap: float | None = None,
+    massless: bool = False,
+    inertia_as_written: bool = False,
+    strict: bool = False,
+    allow: Iterable[str] = (),
+) -> Robot:
+    """The arm of a text, which diagnostics call `name`; else as `load`."""
+    if not isinstance(text, str):
+        raise TypeError(f"a text, not {type(text).__name__}")
+    return _read(name, text, None, _asked(base, tip, lock, None, snap, massless, inertia_as_written, strict, allow))
+
+
+def _decoded(name: str, data: bytes) -> str:
+    fault = None
+    if len(data) > _LONGEST:
+        fault, message, help = "too-long", f"the file is longer than {_LONGEST >> 20} MiB", "no description is; load another file"
+        line = 1
+    else:
+        try:
+            return data.decode("utf-8")
+        except UnicodeDecodeError as error:
+            fault, help = "not-utf-8", "save it as UTF-8"
+            line = data[: error.start].count(b"\n") + 1
+            message = f"line {line} holds a byte that belongs to no character of UTF-8"
+    label = Label("", line, 1, line, 1)
+    found = Diagnostic(fault, "error", message, help, line, 1, line, 1, (label,), name)
+    text = f"error[{fault}]: {message}\n  --> {name}:{line}:1\n   = help: {help}"
+    raise DescriptionError(text, (found,), "")
+
+
+def _written_out(path: str, arguments: Mapping[str, str] | None, packages: Mapping[str, Any] | None) -> str:
+    try:
+        from xacrodoc import XacroDoc, packages as known
+    except ImportError:
+        raise ImportError("a file of xacro needs xacrodoc: pip install armgen[xacro]") from None
+    open(path, "rb").close()
+    if packages:
+        known.update_package_cache({name: os.fspath(folder) for name, folder in packages.items()})
+    return XacroDoc.from_file(path, subargs=dict(arguments or {}), resolve_packages=False).to_urdf_string()
+
+
+# The options of an import, and the values that leave them to it.
+_IMPORT = {"base": None, "tip": None, "lock": [], "name": None, "snap": _SNAP, "massless": False, "inertia_as_written": False}
+
+
+def _asked(
+    base: str | None,
+    tip: str | None,
+    lock: Mapping[str, str | int | float] | None,
+    name: str | None,
+    snap: float | None,
+    massless: bool,
+    inertia_as_written: bool,
+    strict: bool,
+    allow: Iterable[str],
+) -> dict[str, Any]:
+    if isinstance(allow, str):
+        raise TypeError("allow: kinds of warnings, not a single text")
+    snap = _SNAP if snap is None else float(snap)
+    if not 0 <= snap <= 1e-2:
+        raise ValueError(f"snap: from 0 to 0.01 rad, not {snap}")
+    locked = []
+    for joint, value in (lock or {}).items():
+        if isinstance(value, bool) or not isinstance(value, (str, int, float)):
+            raise TypeError(f"lock: {joint} is at a text, an int or a float, not {type(value).__name__}")
+        locked.append((joint, value if isinstance(value, str) else repr(value)))
+    return {
+        "base": base,
+        "tip": tip,
+        "lock": locked,
+        "name": name,
+        "snap": snap,
+        "massless": bool(massless),
+        "inertia_as_written": bool(inertia_as_written),
+        "strict": bool(strict),
+        "allow": list(allow),
+    }
+
+
+def _read(name: str, text: str, folder: str | None, asked: dict[str, Any]) -> Robot:
+    if not text.removeprefix("\ufeff").lstrip().startswith("<"):
+        given = [option for option, value in _IMPORT.items() if asked[option] != value]
+        if given:
+            raise TypeError(f"{given[0]} is an option of the import of a URDF or a MuJoCo model; {name} is a description")
+    stem = os.path.basename(name)
+    for ending in (".xacro", ".urdf", ".xml", ".mjcf"):
+        stem = stem.removesuffix(ending)
+    made = stem if stem.endswith(".yaml") else stem + ".yaml"
+    arm, source, warnings, report = _native.read(name, text, folder, made, asked)
+    robot = object.__new__(Robot)
+    robot._begin(arm, (name, source, tuple(sorted((key, _frozen(value)) for key, value in asked.items()))), warnings, report)
+    return robot
+
+
+def _frozen(value: Any) -> Any:
+    return tuple(value) if isinstance(value, list) else value
+
+
+def _restored(name: str, text: str, asked: tuple[tuple[str, Any], ...]) -> Robot:
+    return _read(name, text, None, {key: list(value) if isinstance(value, tuple) else value for key, value in asked})
+
+
+def _function_of(state: tuple[str, str, Any], name: str) -> Any:
+    return getattr(_restored(*state), name)
+
+
+class Robot:
+    """A valid arm. Its functions are attributes: `robot.gravity(q)`; `robot.functions` has their names.
+
+    It does not change, may be shared by threads, and pickles as its text and options. Made by `load` and `loads`.
+    """
+
+    def __init__(self) -> None:
+        raise TypeError("a robot is made by armgen.load or armgen.loads")
+
+    def _begin(self, arm: Any, state: Any, warnings: tuple[Diagnostic, ...], report: str | None) -> None:
+        own = self.__dict__
+        facts = arm.facts
+        own["_arm"], own["_state"], own["_report"], own["_mass"] = arm, state, report, facts.pop("mass")
+        own["warnings"] = warnings
+        for key in ("revolute", "position_limits", "velocity_limits", "effort_limits", "gravity_vector"):
+            facts[key] = _constant(facts[key])
+        own.update(facts)
+        functions = {function.__name__: function for function in arm.functions(state)}
+        own.update(functions)
+        own["functions"] = tuple(functions)
+
+    @property
+    def text(self) -> str:
+        """The text of the description; of an import that of the description that it made."""
+        return self._arm.text
+
+    @property
+    def report(self) -> dict[str, Any] | None:
+        """What an import has taken, changed and left out; None for a description."""
+        if self._report is None:
+            return None
+        import json
+
+        return json.loads(self._report)
+
+    @property
+    def absent(self) -> dict[str, str]:
+        """The functions that this arm does not have, and why."""
+        return dict(self._arm.absent)
+
+    @property
+    def parameter_names(self) -> tuple[str, ...]:
+        """The parameters of functions whose names end in `_with`, and the columns of regressors."""
+        return tuple(self._arm.parameters[0])
+
+    @property
+    def nominal_parameters(self) -> Any:
+        """Their values in the description."""
+        return _constant(self._arm.parameters[1])
+
+    @property
+    def base_parameter_names(self) -> tuple[str, ...]:
+        """The base parameters."""
+        return tuple(self._arm.base_parameters[0])
+
+    @property
+    def nominal_base_parameters(self) -> Any:
+        """Their values in the description."""
+        return _constant(self._arm.base_parameters[1])
+
+    def prepare(self, *names: str) -> None:
+        """Derives functions now, on all processors, instead of at their first calls; all that the arm has if none is named."""
+        self._arm.prepare(list(names))
+
+    def check(self, *, full: bool = False) -> str:
+        """What the description says and what is doubtful, as `armgen check` prints it."""
+        return self._arm.check(list(dict(self._state[2])["allow"]), full)
+
+    def show(self, quantity: str, *, symbolic: bool = False, form: str | None = None, digits: int | None = None) -> str:
+        """A quantity as `armgen show` prints it.
+
+        symbolic: with the names of parameters instead of their values. form: `"shortest"`, `"closed"` or `"steps"`; closed for arms of up
+        to four joints, else shortest, if not given. digits: constants as decimals of so many digits instead of exactly.
+        """
+        return self._arm.shown(quantity, symbolic, form, digits, "text")
+
+    def latex(self, quantity: str, *, symbolic: bool = False, form: str | None = "shortest", digits: int | None = None) -> str:
+        """The same for a document with amsmath."""
+        return self._arm.shown(quantity, symbolic, form, digits, "latex")
+
+    def sympy(self, quantity: str, *, symbolic: bool = False) -> Any:
+        """A quantity as a `sympy.Matrix` of exact entries in the symbols q1, dq1, ... Of a list of matrices, a list.
+
+        Needs sympy (`pip install armgen[sympy]`).
+        """
+        try:
+            import sympy
+        except ImportError:
+            raise ImportError("this needs sympy: pip install armgen[sympy]") from None
+        import json
+
+        shown = json.loads(self._arm.shown(quantity, symbolic, None, None, "json"))["quantities"]
+        matrices = [_matrix(sympy, one) for one in shown]
+        return matrices[0] if len(matrices) == 1 else matrices
+
+    def page(self, path: str | os.PathLike[str] | None = None) -> str | None:
+        """The page of the arm, one HTML file: its text, or None if it is written to a path."""
+        page = self._arm.page()
+        if path is None:
+            return page
+        with open(path, "w", encoding="utf-8", newline="\n") as file:
+            file.write(page)
+        return None
+
+    def _repr_html_(self) -> str:
+        import html
+
+        page = html.escape(self._arm.page(), quote=True)
+        return (
+            f'<iframe sandbox="allow-scripts" title="{html.escape(self.name)}" srcdoc="{page}" '
+            'style="width: 100%; height: 640px; border: 1px solid #ccc"></iframe>'
+        )
+
+    def generate(
+        self,
+        language: str,
+        *,
+        name: str | None = None,
+        scalar: str = "f64",
+        trig: str | None = None,
+        functions: Iterable[str] | None = None,
+        without: Iterable[str] = (),
+        batch: int | None = None,
+        fma: bool = False,
+        verify: bool = False,
+        tests: bool = False,
+        bounds: bool = False,
+        runtime: bool = False,
+        c_abi: bool = False,
+        native: bool = False,
+        ik: bool = False,
+    ) -> dict[str, str]:
+        """The module in a language, and what is asked for beside it: a text for each name of a file.
+
+        name: that of the module's file without its ending; the robot's if not given. All others are the options of `armgen generate`.
+        """
+        for option, names in (("functions", functions), ("without", without)):
+            if isinstance(names, str):
+                raise TypeError(f"{option}: several texts, not a single one")
+        endings = {"rust": ".rs", "c": ".h", "javascript": ".mjs", "python": ".py"}
+        stem = self.name if name is None else name
+        out = f"+{stem}" if language == "matlab" else stem + endings.get(language, "")
+        options = ["--language", language, "--scalar", scalar, f"--out={out}"]
+        options += ["--trig", trig] if trig is not None else []
+        options += [f"--functions={','.join(functions)}"] if functions is not None else []
+        options += [f"--without={','.join(without)}"] if without else []
+        options += [f"--batch={batch}"] if batch is not None else []
+        flags = {
+            "--fma": fma,
+            "--verify": verify,
+            "--tests": tests,
+            "--bounds": bounds,
+            "--runtime": runtime,
+            "--c-abi": c_abi,
+            "--native": native,
+            "--ik": ik,
+        }
+        return self._arm.generate(options + [flag for flag, wanted in flags.items() if wanted])
+
+    def __getattr__(self, name: str) -> Any:
+        own = self.__dict__.get("name")
+        if own is None or name.startswith("__"):
+            raise AttributeError(f"{type(self).__name__!r} object has no attribute {name!r}")
+        absent = self.absent
+        if name in absent:
+            reason = f": {absent[name]}"
+        else:
+            words = [*absent, *(word for word in dir(self) if not word.startswith("_"))]
+            meant = _native.meant(name, words)
+            reason = f"; here it is `{meant}`" if meant else "; `functions` has the names of its functions"
+        raise AttributeError(f"{own} has no `{name}`{reason}", name=name, obj=self)
+
+    def __setattr__(self, name: str, value: Any) -> None:
+        raise AttributeError("a robot does not change")
+
+    def __delattr__(self, name: str) -> None:
+        raise AttributeError("a robot does not change")
+
+    def __reduce__(self) -> Any:
+        return _restored, self._state
+
+    def __copy__(self) -> Robot:
+        return self
+
+    def __deepcopy__(self, memo: Any) -> Robot:
+        return self
+
+    def __eq__(self, other: object) -> bool:
+        return self._state == other._state if isinstance(other, Robot) else NotImplemented
+
+    def __hash__(self) -> int:
+        return hash(self._state)
+
+    def __repr__(self) -> str:
+        joints = f"{self.dof} joint" + ("s" if self.dof > 1 else "")
+        return f"<armgen.Robot {self.name}: {joints}, {self._mass:.1f} kg>"
+
+
+def _constant(values: Any) -> Any:
+    """An array that cannot be written."""
+    array = _numpy.array(values)
+    array.flags.writeable = False
+    return array
+
+
+# Behind the name of a parameter that is a word of Python.
+_OF_PYTHON = "__word"
+
+
+def _matrix(sympy: Any, shown: dict[str, Any]) -> Any:
+    """A quantity of `armgen show --format json`; its steps are substituted."""
+    import ast
+    import keyword
+    import operator
+    import re
+
+    known: dict[str, Any] = {}
+    binary = {ast.Add: operator.add, ast.Sub: operator.sub, ast.Mult: operator.mul, ast.Div: operator.truediv, ast.Pow: operator.pow}
+    functions = {"sin": sympy.sin, "cos": sympy.cos, "sqrt": sympy.sqrt, "exp": sympy.exp, "abs": sympy.Abs, "sign": sympy.sign}
+
+    def value(node: Any) -> Any:
+        match node:
+            case ast.Expression(body):
+                return value(body)
+            case ast.Constant(int() as number):
+                return sympy.Integer(number)
+            case ast.Name("pi"):
+                return sympy.pi
+            case ast.Name(name):
+                name = name.removesuffix(_OF_PYTHON)
+                return known[name] if name in known else sympy.Symbol(name)
+            case ast.UnaryOp(ast.USub(), operand):
+                return -value(operand)
+            case ast.BinOp(left, kind, right):
+                return binary[type(kind)](value(left), value(right))
+            case ast.Call(ast.Name(name), [argument]):
+                return functions[name](value(argument))
+        raise InternalError(f"a formula that is not read: {ast.dump(node)}")
+
+    def free(name: Any) -> str:
+        return name[0] + _OF_PYTHON if keyword.iskeyword(name[0]) else name[0]
+
+    def parsed(formula: str) -> Any:
+        return value(ast.parse(re.sub(r"[A-Za-z_]\w*", free, formula).replace("^", "**"), mode="eval"))
+
+    for name, formula in shown.get("steps", []):
+        known[name] = parsed(formula)
+    return sympy.Matrix([[parsed(entry) for entry in row] for row in shown["entries"]])

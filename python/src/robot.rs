@@ -1,0 +1,308 @@
+//! From a text to an arm, its facts and its texts.
+
+use std::collections::BTreeMap;
+use std::path::PathBuf;
+use std::sync::{Arc, OnceLock};
+
+use armgen_codegen::catalogue::{self, Quantity};
+use armgen_codegen::derive::parameters::nominal;
+use armgen_codegen::diagnostic::{AnyCode, Diagnostic, Diagnostics, Severity};
+use armgen_codegen::exact::{Number, Polynomial};
+use armgen_codegen::kinds::JointKind;
+use armgen_codegen::manipulator::Manipulator;
+use armgen_codegen::schedule::{Options, Selection};
+use armgen_codegen::source::Source;
+use armgen_codegen::validate::{self, Places};
+use armgen_codegen::{Model, Scalar, Trig};
+use pyo3::exceptions::PyValueError;
+use pyo3::prelude::*;
+use pyo3::types::{PyDict, PyTuple};
+
+use crate::faults::{guarded, listed, refused, refused_for};
+use crate::numbers::{Derived, Function};
+use crate::texts;
+
+/// A valid arm, with the programs of its functions as far as they are derived.
+pub(crate) struct Robot {
+    pub(crate) source: Source,
+    pub(crate) model: Model,
+    places: Places,
+    pub(crate) functions: Vec<Slot>,
+    absent: Vec<(String, String)>,
+}
+
+/// A function that the arm has.
+pub(crate) struct Slot {
+    pub(crate) quantity: &'static Quantity,
+    pub(crate) with: bool,
+    /// Its program; a fault, if a number in it does not fit a float.
+    derived: OnceLock<Result<Derived, Box<Diagnostic>>>,
+}
+
+impl Robot {
+    fn new(source: Source, manipulator: Manipulator, places: Places) -> Robot {
+        let model = Model::new(manipulator);
+        let (mut functions, mut absent) = (Vec::new(), Vec::new());
+        for (quantity, with) in catalogue::functions() {
+            match (quantity.missing)(&model, with) {
+                Some(reason) => absent.push((quantity.function_name(with), reason)),
+                None => functions.push(Slot { quantity, with, derived: OnceLock::new() }),
+            }
+        }
+        Robot { source, model, places, functions, absent }
+    }
+
+    /// A function, derived now if it was not before.
+    pub(crate) fn derived(&self, index: usize) -> Result<&Derived, Box<Diagnostic>> {
+        let slot = &self.functions[index];
+        let made = slot.derived.get_or_init(|| {
+            let module = self.module(vec![slot.quantity.function_name(slot.with)])?;
+            Ok(Derived::new(&module, module.functions.first().expect("the arm has this function")))
+        });
+        made.as_ref().map_err(Clone::clone)
+    }
+
+    /// The same if it was derived before.
+    pub(crate) fn known(&self, index: usize) -> Option<&Derived> {
+        self.functions[index].derived.get()?.as_ref().ok()
+    }
+
+    /// The functions of these names, which the arm has.
+    fn module(&self, names: Vec<String>) -> Result<armgen_codegen::program::Module, Box<Diagnostic>> {
+        let functions = Selection::named(names).expect("names of the catalogue");
+        let options = Options { trig: Trig::Fast, functions, ..Options::default() };
+        armgen_codegen::programs(&self.model, &self.places, &options)
+    }
+}
+
+/// A valid arm.
+#[pyclass(frozen, module = "armgen._native")]
+pub(crate) struct Arm {
+    robot: Arc<Robot>,
+}
+
+/// The tables of parameters: names and nominal values.
+type Parameters = (Vec<String>, Vec<f64>);
+
+#[pymethods]
+impl Arm {
+    /// What the description says, by the names of attributes.
+    #[getter]
+    fn facts<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
+        let arm = &self.robot.model.manipulator;
+        let number = |value: &Polynomial| nominal(arm, value).to_f64();
+        let limit = |value: &Option<Number>| value.as_ref().map_or(f64::INFINITY, Number::to_f64);
+        let joints = &arm.joints;
+        let facts = PyDict::new(py);
+        facts.set_item("name", &arm.name)?;
+        facts.set_item("dof", arm.dof())?;
+        facts.set_item("joint_names", PyTuple::new(py, joints.iter().map(|joint| &joint.name))?)?;
+        facts.set_item("revolute", joints.iter().map(|joint| joint.kind == JointKind::Revolute).collect::<Vec<_>>())?;
+        let positions = joints.iter().map(|joint| {
+            let limits = joint.limits.position.as_ref();
+            limits.map_or([f64::NEG_INFINITY, f64::INFINITY], |limits| limits.each_ref().map(Number::to_f64)).to_vec()
+        });
+        facts.set_item("position_limits", positions.collect::<Vec<_>>())?;
+        facts.set_item("velocity_limits", joints.iter().map(|joint| limit(&joint.limits.velocity)).collect::<Vec<_>>())?;
+        facts.set_item("effort_limits", joints.iter().map(|joint| limit(&joint.limits.effort)).collect::<Vec<_>>())?;
+        facts.set_item("task", PyTuple::new(py, arm.task.iter().map(|row| row.name()))?)?;
+        facts.set_item("gravity_vector", arm.gravity.each_ref().map(number).to_vec())?;
+        let rotors = joints.iter().filter_map(|joint| joint.motor.as_ref()).map(|motor| &motor.mass);
+        let links = joints.iter().flat_map(|joint| &joint.link).map(|part| &part.body.mass);
+        let mass = links.chain(rotors).fold(Number::zero(), |sum, mass| &sum + &nominal(arm, mass));
+        facts.set_item("mass", mass.to_f64())?;
+        Ok(facts)
+    }
+
+    /// Names and nominal values of the parameters.
+    #[getter]
+    fn parameters(&self) -> Parameters {
+        table(&self.robot.model.parameters.entries)
+    }
+
+    /// Names and nominal values of the base parameters.
+    #[getter]
+    fn base_parameters(&self, py: Python<'_>) -> PyResult<Parameters> {
+        guarded(py, || Ok(py.detach(|| table(&self.robot.model.base_parameters().entries))))
+    }
+
+    /// The text of the description.
+    #[getter]
+    fn text(&self) -> &str {
+        self.robot.source.text()
+    }
+
+    /// The functions that the arm has, in the order of the catalogue. `robot` is what [`Function`] pickles.
+    fn functions(&self, py: Python<'_>, robot: Py<PyAny>) -> PyResult<Vec<Function>> {
+        let of = |index| Function::new(py, self.robot.clone(), index, robot.clone_ref(py));
+        (0..self.robot.functions.len()).map(of).collect()
+    }
+
+    /// The functions that it does not have, and why.
+    #[getter]
+    fn absent(&self) -> Vec<(String, String)> {
+        self.robot.absent.clone()
+    }
+
+    /// A quantity as `armgen show` writes it, as `text`, `latex` or `json`.
+    fn shown(
+        &self,
+        py: Python<'_>,
+        quantity: &str,
+        symbolic: bool,
+        form: Option<&str>,
+        digits: Option<u8>,
+        format: &str,
+    ) -> PyResult<String> {
+        let model = &self.robot.model;
+        let made = guarded(py, || Ok(py.detach(|| texts::shown(model, quantity, symbolic, form, digits, format))))?;
+        made.map_err(PyValueError::new_err)
+    }
+
+    /// The page.
+    fn page(&self, py: Python<'_>) -> PyResult<Option<String>> {
+        guarded(py, || Ok(py.detach(|| texts::page(&self.robot.source))))
+    }
+
+    /// The summary of `armgen check`.
+    fn check(&self, py: Python<'_>, allow: Vec<String>, full: bool) -> PyResult<Option<String>> {
+        guarded(py, || Ok(py.detach(|| armgen_commands::summary(&self.robot.source, &allow, full))))
+    }
+
+    /// The files of `armgen generate` with these options, by their names.
+    fn generate(&self, py: Python<'_>, options: Vec<String>) -> PyResult<BTreeMap<String, String>> {
+        let made = guarded(py, || Ok(py.detach(|| armgen_commands::generated(&self.robot.source, options))))?;
+        made.map(BTreeMap::from_iter).map_err(PyValueError::new_err)
+    }
+
+    /// Derives functions at the same time; all that the arm has if none is named.
+    fn prepare(&self, py: Python<'_>, names: Vec<String>) -> PyResult<()> {
+        let robot = &*self.robot;
+        if let Err(unknown) = Selection::named(&names) {
+            return Err(PyValueError::new_err(unknown.to_string()));
+        }
+        if let Some((name, reason)) = robot.absent.iter().find(|(name, _)| names.contains(name)) {
+            return Err(PyValueError::new_err(format!("there is no `{name}` of this arm: {reason}")));
+        }
+        let is_wanted = |slot: &&Slot| {
+            let name = slot.quantity.function_name(slot.with);
+            slot.derived.get().is_none() && (names.is_empty() || names.contains(&name))
+        };
+        let wanted: Vec<&Slot> = robot.functions.iter().filter(is_wanted).collect();
+        if wanted.is_empty() {
+            return Ok(());
+        }
+        let done = guarded(py, || {
+            Ok(py.detach(|| {
+                let module = robot.module(wanted.iter().map(|slot| slot.quantity.function_name(slot.with)).collect())?;
+                for slot in &wanted {
+                    let own = |function: &&armgen_codegen::program::Function| {
+                        function.quantity == slot.quantity && function.with_parameters == slot.with
+                    };
+                    let function = module.functions.iter().find(own).expect("the arm has this function");
+                    // Another thread may have been faster, with the same program.
+                    let _ = slot.derived.set(Ok(Derived::new(&module, function)));
+                }
+                Ok(())
+            }))
+        })?;
+        done.map_err(|fault: Box<Diagnostic>| refused_for(py, &robot.source, *fault))
+    }
+}
+
+fn table(entries: &[catalogue::Parameter]) -> Parameters {
+    entries.iter().map(|parameter| (parameter.name.clone(), parameter.nominal.to_f64())).unzip()
+}
+
+/// What was read: the arm, the text with all that it includes, the warnings, and of an import its report as JSON.
+type Read<'py> = (Arm, String, Bound<'py, PyTuple>, Option<String>);
+
+/// What is made of a text: the options of the package, checked there as far as their types go.
+#[derive(FromPyObject)]
+#[pyo3(from_item_all)]
+pub(crate) struct Asked {
+    base: Option<String>,
+    tip: Option<String>,
+    lock: Vec<(String, String)>,
+    name: Option<String>,
+    snap: f64,
+    massless: bool,
+    inertia_as_written: bool,
+    strict: bool,
+    allow: Vec<String>,
+}
+
+/// The arm of a text: a description, a URDF or a MuJoCo model. `folder` has the files that a model includes; `made` is the name of the
+/// description that an import makes.
+#[pyfunction]
+pub(crate) fn read<'py>(
+    py: Python<'py>,
+    name: &str,
+    text: &str,
+    folder: Option<PathBuf>,
+    made: &str,
+    asked: Asked,
+) -> PyResult<Read<'py>> {
+    let is_of_import = |kind: &&String| {
+        let kinds = armgen_import::Code::ALL.iter().map(|&code| AnyCode::from(code));
+        kinds.filter(|code| code.severity() == Severity::Warning).any(|code| code.name() == kind.as_str())
+    };
+    if let Some(unknown) = asked.allow.iter().filter(|kind| !is_of_import(kind)).find_map(|kind| validate::warning(kind).err()) {
+        return Err(PyValueError::new_err(format!("allow: {unknown}")));
+    }
+    if asked.name.as_ref().is_some_and(|name| !validate::is_rust_name(name)) {
+        return Err(PyValueError::new_err("name: letters, digits and `_`, a letter first"));
+    }
+    let source = Source::new(name, text);
+    let (given, source, warnings, report) = match is_xml(source.text()) {
+        false => (source.text().to_owned(), source, PyTuple::empty(py), None),
+        true => {
+            let (imported, source, mut found) = guarded(py, || Ok(py.detach(|| imported(&source, folder, &asked))))?;
+            found.allow(&asked.allow);
+            let is_refused = asked.strict && !found.is_empty();
+            let Some(imported) = imported.filter(|_| !is_refused) else { return Err(refused(py, &source, &found)) };
+            let report = imported.report.to_json();
+            (source.text().to_owned(), Source::new(made, imported.yaml), listed(py, &source, &found)?, Some(report))
+        }
+    };
+    let (valid, mut found) = guarded(py, || Ok(py.detach(|| validate::read_for(&source, Scalar::F64))))?;
+    found.allow(&asked.allow);
+    let is_refused = asked.strict && !found.is_empty();
+    let Some((manipulator, places)) = valid.filter(|_| !is_refused) else { return Err(refused(py, &source, &found)) };
+    let warnings = warnings.add(listed(py, &source, &found)?)?.cast_into::<PyTuple>()?;
+    let robot = guarded(py, || Ok(py.detach(|| Robot::new(source, manipulator, places))))?;
+    Ok((Arm { robot: Arc::new(robot) }, given, warnings, report))
+}
+
+/// Whether a text is to be imported.
+fn is_xml(text: &str) -> bool {
+    text.trim_start().starts_with('<')
+}
+
+/// The arm of a URDF or a MuJoCo model, the text with all that it includes, and what there is to say of it.
+fn imported(source: &Source, folder: Option<PathBuf>, asked: &Asked) -> (Option<armgen_import::Imported>, Source, Diagnostics) {
+    let beside = |path: &str| match &folder {
+        Some(folder) => armgen_import::build_script::beside(folder, path),
+        None => Err("a text is in no folder: load the file of the model".to_owned()),
+    };
+    let source = match armgen_import::included(source, &beside) {
+        Ok(source) => source,
+        Err(fault) => {
+            let mut diagnostics = Diagnostics::new();
+            diagnostics.push(*fault);
+            return (None, source.clone(), diagnostics);
+        }
+    };
+    let options = armgen_import::Options {
+        base: asked.base.clone(),
+        tip: asked.tip.clone(),
+        lock: asked.lock.clone(),
+        name: asked.name.clone(),
+        snap: asked.snap,
+        massless: asked.massless,
+        inertia_as_written: asked.inertia_as_written,
+        ..armgen_import::Options::default()
+    };
+    let (imported, diagnostics) = armgen_import::import(&source, &options);
+    (imported, source, diagnostics)
+}

@@ -1,0 +1,191 @@
+"""The stub of the package, whose functions are those of the catalogue: `python stub.py` writes it, a test compares it."""
+
+import pathlib
+
+from armgen import _native, _structures
+
+HEAD = '''"""Types of the package. Written by tests/stub.py."""
+
+import os
+from typing import Any, Final, Iterable, Mapping, NamedTuple, NoReturn
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+from typing_extensions import disjoint_base
+
+__version__: Final[str]
+
+class Label(NamedTuple):
+    text: str
+    line: int
+    column: int
+    end_line: int
+    end_column: int
+
+class Diagnostic(NamedTuple):
+    code: str
+    severity: str
+    message: str
+    help: str
+    line: int
+    column: int
+    end_line: int
+    end_column: int
+    labels: tuple[Label, ...]
+    file: str
+
+class DescriptionError(ValueError):
+    diagnostics: tuple[Diagnostic, ...]
+    source: str
+    def __init__(self, text: str, diagnostics: tuple[Diagnostic, ...] = (), source: str = "") -> None: ...
+    def __reduce__(self) -> Any: ...
+
+class InternalError(RuntimeError):
+    def __init__(self, said: str) -> None: ...
+
+def load(
+    path: str | os.PathLike[str],
+    *,
+    base: str | None = None,
+    tip: str | None = None,
+    lock: Mapping[str, str | int | float] | None = None,
+    name: str | None = None,
+    snap: float | None = None,
+    massless: bool = False,
+    inertia_as_written: bool = False,
+    strict: bool = False,
+    allow: Iterable[str] = (),
+    arguments: Mapping[str, str] | None = None,
+    packages: Mapping[str, str | os.PathLike[str]] | None = None,
+) -> Robot: ...
+def loads(
+    text: str,
+    name: str = "robot.yaml",
+    *,
+    base: str | None = None,
+    tip: str | None = None,
+    lock: Mapping[str, str | int | float] | None = None,
+    snap: float | None = None,
+    massless: bool = False,
+    inertia_as_written: bool = False,
+    strict: bool = False,
+    allow: Iterable[str] = (),
+) -> Robot: ...
+
+@disjoint_base
+class Function:
+    @property
+    def __name__(self) -> str: ...
+    @property
+    def arguments(self) -> tuple[str, ...]: ...
+    @property
+    def shape(self) -> Any: ...
+    @property
+    def unit(self) -> Any: ...
+    @property
+    def operations(self) -> dict[str, int]: ...
+    @property
+    def derivation(self) -> str: ...
+    def __call__(self, *given: ArrayLike, **named: Any) -> Any: ...
+    def __reduce__(self) -> Any: ...
+    def __copy__(self) -> Function: ...
+    def __deepcopy__(self, _memo: Any, /) -> Function: ...
+'''
+
+ROBOT = '''
+class Robot:
+    name: Final[str]
+    dof: Final[int]
+    joint_names: Final[tuple[str, ...]]
+    revolute: Final[NDArray[np.bool_]]
+    position_limits: Final[NDArray[np.float64]]
+    velocity_limits: Final[NDArray[np.float64]]
+    effort_limits: Final[NDArray[np.float64]]
+    task: Final[tuple[str, ...]]
+    gravity_vector: Final[NDArray[np.float64]]
+    warnings: Final[tuple[Diagnostic, ...]]
+    functions: Final[tuple[str, ...]]
+    def __init__(self) -> None: ...
+    @property
+    def text(self) -> str: ...
+    @property
+    def report(self) -> dict[str, Any] | None: ...
+    @property
+    def absent(self) -> dict[str, str]: ...
+    @property
+    def parameter_names(self) -> tuple[str, ...]: ...
+    @property
+    def nominal_parameters(self) -> NDArray[np.float64]: ...
+    @property
+    def base_parameter_names(self) -> tuple[str, ...]: ...
+    @property
+    def nominal_base_parameters(self) -> NDArray[np.float64]: ...
+    def prepare(self, *names: str) -> None: ...
+    def check(self, *, full: bool = False) -> str: ...
+    def show(self, quantity: str, *, symbolic: bool = False, form: str | None = None, digits: int | None = None) -> str: ...
+    def latex(
+        self, quantity: str, *, symbolic: bool = False, form: str | None = "shortest", digits: int | None = None
+    ) -> str: ...
+    def sympy(self, quantity: str, *, symbolic: bool = False) -> Any: ...
+    def page(self, path: str | os.PathLike[str] | None = None) -> str | None: ...
+    def _repr_html_(self) -> str: ...
+    def generate(
+        self,
+        language: str,
+        *,
+        name: str | None = None,
+        scalar: str = "f64",
+        trig: str | None = None,
+        functions: Iterable[str] | None = None,
+        without: Iterable[str] = (),
+        batch: int | None = None,
+        fma: bool = False,
+        verify: bool = False,
+        tests: bool = False,
+        bounds: bool = False,
+        runtime: bool = False,
+        c_abi: bool = False,
+        native: bool = False,
+        ik: bool = False,
+    ) -> dict[str, str]: ...
+    def __setattr__(self, name: str, value: Any) -> NoReturn: ...
+    def __delattr__(self, name: str) -> NoReturn: ...
+    def __reduce__(self) -> Any: ...
+    def __copy__(self) -> Robot: ...
+    def __deepcopy__(self, memo: Any) -> Robot: ...
+    def __eq__(self, other: object) -> bool: ...
+    def __hash__(self) -> int: ...
+'''
+
+
+def text() -> str:
+    structures, classes, attributes = [], {}, []
+    for plain, made in _structures.items():
+        structures.append(f"\nclass {made.__name__}(NamedTuple):\n" + "".join(f"    {part}: NDArray[np.float64]\n" for part in made._fields))
+    for name, _, arguments, parts, dimensions in _native.catalogue_of_functions():
+        if len(parts) > 1:
+            made = _structures[name.removesuffix("_with")].__name__
+            result, out = made, f"{made} | tuple[NDArray[np.float64], ...] | None"
+        else:
+            result = "float | NDArray[np.float64]" if dimensions == 0 else "NDArray[np.float64]"
+            out = "NDArray[np.float64] | None"
+        key = (tuple(arguments), result)
+        if key not in classes:
+            # Of a number alone, a state gives a float and several states give an array.
+            given = "".join(f"{argument}: ArrayLike, " for argument in arguments)
+            words = "".join(argument.capitalize() for argument in arguments)
+            kind = {"float | NDArray[np.float64]": "Number", "NDArray[np.float64]": "Array"}.get(result, result)
+            classes[key] = (f"_{kind}Of{words}", given, out, result)
+        attributes.append(f"    {name}: Final[{classes[key][0]}]\n")
+    functions = "".join(
+        f"\nclass {name}(Function):\n"
+        f"    def __call__(  # type: ignore[override]\n"
+        f"        self, {given}*, out: {out} = None, threads: int = 1\n"
+        f"    ) -> {result}: ...\n"
+        for name, given, out, result in classes.values()
+    )
+    return HEAD + "".join(structures) + functions + ROBOT + "".join(attributes)
+
+
+if __name__ == "__main__":
+    (pathlib.Path(__file__).parent.parent / "armgen" / "__init__.pyi").write_text(text(), encoding="utf-8")

@@ -1,0 +1,33 @@
+"""Every kind of use, for type checkers: `mypy --strict` finds nothing in it."""
+
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+
+import armgen
+
+robot: armgen.Robot = armgen.load(Path("robot.yaml"), strict=True, allow=["no-effect"])
+other: armgen.Robot = armgen.loads("<robot/>", "arm.urdf", tip="tool0", lock={"finger": 0.04}, snap=0)
+q: NDArray[np.float64] = np.zeros(robot.dof)
+torque: NDArray[np.float64] = robot.inverse_dynamics(q, q, [0.0] * robot.dof)
+many: NDArray[np.float64] = robot.gravity(np.zeros((100, robot.dof)), out=np.empty((100, robot.dof)), threads=0)
+energy: float | NDArray[np.float64] = robot.kinetic_energy(q, q)
+inertia: NDArray[np.float64] = robot.equations_of_motion(q, q).inertia
+by_q: NDArray[np.float64] = robot.inverse_dynamics_derivatives(q, q, q).by_q
+with_parameters: NDArray[np.float64] = robot.gravity_with(robot.nominal_parameters, q)
+function: armgen.Function = robot.gravity
+names: tuple[str, ...] = function.arguments + robot.functions + robot.parameter_names
+count: int = function.operations["mul"]
+reason: str = robot.absent["gravity"]
+finite: NDArray[np.bool_] = np.isfinite(robot.position_limits) & robot.revolute[:, None]
+texts: list[str] = [robot.text, robot.check(), robot.show("gravity"), robot.latex("gravity", digits=4), repr(robot)]
+files: dict[str, str] = robot.generate("python", functions=["gravity"])
+robot.page("robot.html")
+robot.prepare("gravity")
+
+try:
+    armgen.loads("")
+except armgen.DescriptionError as error:
+    for found in error.diagnostics:
+        place: tuple[str, int, int] = (found.file, found.line, found.column)
