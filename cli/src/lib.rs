@@ -304,7 +304,7 @@ Exit codes: 0 done, 1 the description is faulty, 2 a file cannot be read or writ
   armgen schema > robot.schema.json
 
 Editors use it for completion, explanations and a first check (docs/editors.md). It accepts every
-file that armgen accepts; names, signs and sums are left to `armgen check`.")]
+file that armgen accepts; `armgen check` also judges names, signs and sums.")]
     Schema,
     /// Robots move in the lab: `cargo run --release -- run` in the folder of armgen
     #[command(hide = true)]

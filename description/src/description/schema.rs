@@ -1,4 +1,4 @@
-//! The JSON Schema of a description (draft 7), for editors: made from the tables of [`keys`](super::keys), which the reader of files uses, too.
+//! The JSON Schema of a description (draft 7), for editors: made from the tables of `keys.rs`, which the reader of files uses, too.
 //!
 //! The schema accepts every file that armgen accepts. It knows keys, kinds of values, words, lengths of lists and the grammar of
 //! expressions. Names, signs and sums are left to [`validate`](crate::validate).
