@@ -59,7 +59,8 @@ const URDF_JOINT: &[Key] = &[
     optional("armature"),
 ];
 const INVERSE_KINEMATICS: &[Key] = &[optional("target"), optional("given")];
-const LIMITS: &[Key] = &[usual("position", "position: [-pi/2, pi/2]"), optional("velocity"), optional("effort")];
+const LIMITS: &[Key] =
+    &[usual("position", "position: [-pi/2, pi/2]"), optional("velocity"), optional("acceleration"), optional("effort")];
 const LINK: &[Key] = &[required("mass", "mass: 5"), optional("com"), optional("inertia"), optional("attached")];
 const ATTACHED: &[Key] =
     &[optional("name"), optional("origin"), required("mass", "mass: 0.5"), optional("com"), optional("inertia")];
@@ -84,6 +85,7 @@ const MOTOR: &[Key] = &[
     optional("position"),
     optional("axis"),
     optional("viscous"),
+    optional("gain"),
 ];
 const FRICTION: &[Key] = &[
     usual("viscous", "viscous: 0.2"),
@@ -224,6 +226,7 @@ impl Reader<'_> {
             limits: limits.map_or_else(LimitsDescription::default, |fields| LimitsDescription {
                 position: fields.get("position").and_then(|(key, node)| self.vector(node, key, "position", ["lowest", "highest"])),
                 velocity: self.field(&fields, "velocity"),
+                acceleration: self.field(&fields, "acceleration"),
                 effort: self.field(&fields, "effort"),
             }),
             link: fields.get("link").and_then(|(key, node)| self.body(node, key, "`link`", LINK)),
@@ -365,6 +368,7 @@ impl Reader<'_> {
             position: fields.get("position").and_then(|(key, node)| self.vector(node, key, "position", ["x", "y", "z"])),
             axis: fields.get("axis").and_then(|(key, node)| self.vector(node, key, "axis", ["x", "y", "z"])),
             viscous: self.field(&fields, "viscous"),
+            gain: self.field(&fields, "gain"),
         })
     }
 
