@@ -6,6 +6,7 @@ pub(crate) mod convert;
 pub(crate) mod count;
 pub(crate) mod export;
 pub(crate) mod generate;
+pub(crate) mod identify;
 pub(crate) mod import;
 pub(crate) mod package;
 pub(crate) mod page;

@@ -253,6 +253,42 @@ Exit codes: 0 equal, 1 not equal or faulty (the first entry that differs is name
         #[arg(long, value_parser = language_parser())]
         language: Option<Language>,
     },
+    /// Identify base parameters, friction and drive gains from logs of an arm
+    #[command(after_help = "Examples:
+  armgen identify robot.yaml log.csv --report out
+  armgen identify robot.yaml free.csv loaded.csv --load 2.5 --options identify.yaml
+  armgen identify robot.yaml --validate held_out.csv             judges the numbers of the file
+
+Logs are CSV with columns t, q_JOINT, dq_JOINT (optional), tau_JOINT or current_JOINT; options rename
+columns and give units, loads and sessions (docs/identification.md).
+Exit codes: 0 done, 1 the description, the options or a log is faulty, or parameters do not show,
+2 a file cannot be read or written.")]
+    Identify {
+        /// Description of the robot arm
+        #[arg(value_name = "ROBOT.yaml", value_hint = ValueHint::FilePath)]
+        file: PathBuf,
+        /// Logs to identify from
+        #[arg(value_name = "LOG.csv", value_hint = ValueHint::FilePath)]
+        logs: Vec<PathBuf>,
+        /// Options: logs with their loads, names of columns, units, friction, cutoff, delays
+        #[arg(long, value_name = "IDENTIFY.yaml", value_hint = ValueHint::FilePath)]
+        options: Option<PathBuf>,
+        /// Log to judge by; may be given several times
+        #[arg(long, value_name = "LOG.csv", value_hint = ValueHint::FilePath)]
+        validate: Vec<PathBuf>,
+        /// Mass of the load at the end effector in the last log, kg
+        #[arg(long, value_name = "MASS")]
+        load: Option<f64>,
+        /// Folder for report.json
+        #[arg(long, value_name = "DIR", value_hint = ValueHint::DirPath)]
+        report: Option<PathBuf>,
+        /// Leave faulty rows out, with a warning
+        #[arg(long)]
+        skip_bad: bool,
+        /// Keep parameters that the logs do not show
+        #[arg(long)]
+        accept_unexcited: bool,
+    },
     /// Count the operations of every emitted function
     #[command(after_help = "Examples:
   armgen count robot.yaml
@@ -456,6 +492,10 @@ fn run(command: Command) -> u8 {
         Command::Convert { file, convention, out } => convert::run(&file, convention, out.as_ref()),
         Command::Export { file, format, out } => export::run(&file, format, out.as_ref()),
         Command::Verify { description, module, language } => commands::verify::run(&description, &module, language),
+        Command::Identify { file, logs, options, validate, load, report, skip_bad, accept_unexcited } => {
+            let asked = commands::identify::Asked { logs, options, validate, load, report, skip_bad, accept_unexcited };
+            commands::identify::run(&file, &asked)
+        }
         Command::Count { file, format, functions, without, fma } => commands::count::run(&file, format, &functions, without, fma),
         Command::Page { file, out, logs } => commands::page::run(&file, out, &logs),
         Command::Run { arguments: _ } => {

@@ -154,6 +154,8 @@ pub struct LimitsDescription {
     pub position: Option<Spanned<[Value; 2]>>,
     /// Highest rate.
     pub velocity: Value,
+    /// Highest acceleration.
+    pub acceleration: Value,
     /// Highest torque or force.
     pub effort: Value,
 }
@@ -256,6 +258,8 @@ pub struct MotorDescription {
     pub axis: Option<Spanned<[Value; 3]>>,
     /// Viscous friction at the rotor.
     pub viscous: Value,
+    /// Torque at the joint per unit of measured current.
+    pub gain: Value,
 }
 
 /// A frame in another: each element in the one before it.

@@ -167,13 +167,15 @@ pub struct PlacedBody {
     pub body: Body,
 }
 
-/// Limits of a joint; rad or m, rad/s or m/s, N m or N.
+/// Limits of a joint; rad or m, rad/s or m/s, rad/s² or m/s², N m or N.
 #[derive(Clone, Debug, Default)]
 pub struct Limits {
     /// Lowest and highest q.
     pub position: Option<[Number; 2]>,
     /// Highest |dq|.
     pub velocity: Option<Number>,
+    /// Highest |ddq| of planned motions.
+    pub acceleration: Option<Number>,
     /// Highest |tau|.
     pub effort: Option<Number>,
 }
@@ -204,6 +206,8 @@ pub struct Motor {
     pub axis: [Number; 3],
     /// Viscous friction at the rotor, N m s; acts at the joint as ratio² times this. `None` where the file does not give it.
     pub viscous: Option<Polynomial>,
+    /// Torque or force at the joint per unit of measured current, N m/A or N/A; above 0. It turns logs of currents into torques, and enters no equation.
+    pub gain: Option<Number>,
 }
 
 /// A fixed frame in another: x_outer = rotation · x_inner + translation.

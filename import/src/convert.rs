@@ -303,7 +303,12 @@ impl<'d> Converter<'d> {
         text.extend(row.keys.iter().map(|key| format!("    {key}")));
         let mut limits = Vec::new();
         limits.extend(joint.limits.position.as_ref().map(|limits| format!("position: {}", self.vector(&limits.value))));
-        for (name, value) in [("velocity", &joint.limits.velocity), ("effort", &joint.limits.effort)] {
+        let sizes = [
+            ("velocity", &joint.limits.velocity),
+            ("acceleration", &joint.limits.acceleration),
+            ("effort", &joint.limits.effort),
+        ];
+        for (name, value) in sizes {
             limits.extend(value.as_ref().map(|expression| format!("{name}: {}", self.text(expression))));
         }
         if !limits.is_empty() {
@@ -399,9 +404,13 @@ impl<'d> Converter<'d> {
         let (Some(motor), Some(valid)) = (&joint.motor, &self.arm.joints[k].motor) else { return };
         text.push("    motor:".into());
         let mut line = |name: &str, words: String| text.push(format!("      {name}: {words}"));
-        for (name, value) in
-            [("ratio", &motor.ratio), ("inertia", &motor.inertia), ("mass", &motor.mass), ("viscous", &motor.viscous)]
-        {
+        for (name, value) in [
+            ("ratio", &motor.ratio),
+            ("inertia", &motor.inertia),
+            ("mass", &motor.mass),
+            ("viscous", &motor.viscous),
+            ("gain", &motor.gain),
+        ] {
             if let Some(expression) = value {
                 line(name, self.text(expression));
             }

@@ -395,6 +395,10 @@ impl Writer<'_> {
             let stribeck = friction.stribeck.as_ref().is_some_and(|stribeck| is_some(&stribeck.torque));
             stribeck || [&friction.offset, &friction.cubic, &friction.load].into_iter().any(is_some)
         });
+        joints_with("a URDF has no limits of acceleration; left out at", &|joint| joint.limits.acceleration.is_some());
+        joints_with("a URDF has no gains of motors; left out at", &|joint| {
+            joint.motor.as_ref().is_some_and(|motor| motor.gain.is_some())
+        });
         joints_with("a URDF demands `effort` and `velocity`; 0 stands for one that is not given at", &|joint| {
             let prismatic = joint.kind.as_ref().is_some_and(|kind| kind.value == JointKind::Prismatic);
             let any = joint.limits.position.is_some() || joint.limits.velocity.is_some() || joint.limits.effort.is_some();

@@ -137,6 +137,23 @@ const PAGE: Layers = &[
 const NUMBERS: Layers =
     &[("scalar", &[]), ("function", &[]), ("program", &["function", "scalar"]), ("execute", &["function", "program", "scalar"])];
 
+/// Logs and signals know no arm; what estimates knows no report.
+const IDENTIFY: Layers = &[
+    ("finding", &[]),
+    ("signal", &[]),
+    ("body", &[]),
+    ("fit", &["signal"]),
+    ("arm", &["body"]),
+    ("log", &["finding"]),
+    ("prepare", &["arm", "log", "signal"]),
+    ("options", &["log", "prepare"]),
+    ("estimate", &["arm", "fit", "options", "prepare"]),
+    ("suspect", &["arm", "estimate", "finding", "fit", "log", "signal"]),
+    ("judge", &["arm", "log", "prepare", "signal"]),
+    ("identify", &["arm", "body", "estimate", "finding", "fit", "judge", "log", "options", "prepare", "signal", "suspect"]),
+    ("report", &["arm", "body", "finding", "identify", "judge"]),
+];
+
 const COMMANDS: Layers =
     &[("input", &[]), ("companions", &[]), ("file_names", &[]), ("commands", &["companions", "file_names", "input"])];
 
@@ -577,12 +594,13 @@ fn read(name: &str) -> Crate {
     Crate::read(&root.join(name).join("src"))
 }
 
-const CRATES: [(&str, Layers); 10] = [
+const CRATES: [(&str, Layers); 11] = [
     ("algebra", ALGEBRA),
     ("description", DESCRIPTION),
     ("codegen", CODEGEN),
     ("runtime", RUNTIME),
     ("experiments", EXPERIMENTS),
+    ("identify", IDENTIFY),
     ("import", IMPORT),
     ("page", PAGE),
     ("cli", COMMANDS),

@@ -363,6 +363,21 @@ pub fn base_parameters_with_rotors(manipulator: &Manipulator, field: &Field) -> 
 
 /// The base parameters. The masses of rotors are no parameters; they are known, or, for `base_regressor`, part of the links' values.
 fn grouped(manipulator: &Manipulator, field: &Field, convention: GroupingConvention, own: bool) -> ParameterVector {
+    combined(manipulator, field, convention, own).0
+}
+
+/// The base parameters of [`base_parameters`], and each as coefficients of the standard parameters.
+pub fn base_combinations(manipulator: &Manipulator, field: &Field) -> (ParameterVector, Vec<Vec<Number>>) {
+    combined(manipulator, field, GroupingConvention::NoInertiaAboutY, false)
+}
+
+/// The base parameters, and each as coefficients of the standard parameters and, last, its constant part.
+fn combined(
+    manipulator: &Manipulator,
+    field: &Field,
+    convention: GroupingConvention,
+    own: bool,
+) -> (ParameterVector, Vec<Vec<Number>>) {
     let mut pool = Pool::new(field.clone());
     let standard = ParameterVector::standard(manipulator);
     let mut arm = Arm::new(&mut pool, manipulator, View::Vector(&standard));
@@ -383,7 +398,7 @@ fn grouped(manipulator: &Manipulator, field: &Field, convention: GroupingConvent
         y = with_friction_apart(&y, &columns);
     }
     let dependence = dependence(&pool, &y);
-    let mut base: Vec<(StandardParameter, Parameter)> = dependence
+    let mut base: Vec<(StandardParameter, Parameter, Vec<Number>)> = dependence
         .independent
         .iter()
         .map(|&column| {
@@ -395,12 +410,13 @@ fn grouped(manipulator: &Manipulator, field: &Field, convention: GroupingConvent
                     }
                 }
             }
-            (columns[column], entry(columns[column], &standard, &total))
+            (columns[column], entry(columns[column], &standard, &total), total)
         })
         .collect();
-    base.sort_by_key(|(parameter, _)| *parameter);
-    let (kept, entries) = base.into_iter().unzip();
-    ParameterVector { entries, kind: ParameterKind::Base(kept) }
+    base.sort_by_key(|(parameter, ..)| *parameter);
+    let combinations = base.iter().map(|(.., total)| total.clone()).collect();
+    let (kept, entries) = base.into_iter().map(|(parameter, entry, _)| (parameter, entry)).unzip();
+    (ParameterVector { entries, kind: ParameterKind::Base(kept) }, combinations)
 }
 
 /// The rows of friction below those of all other torques. On a slide that gravity acts along, the torque of a mass less that of an armature

@@ -202,6 +202,7 @@ pub(super) const INVERSE_KINEMATICS: &[Entry] = &[
 pub(super) const LIMITS: &[Entry] = &[
     usual("position", "position: [-pi/2, pi/2]", Shape::Vector(2, POSITION), "Lowest and highest position."),
     optional("velocity", Shape::Expression(RATE), "Highest rate."),
+    optional("acceleration", Shape::Expression("rad/s² or m/s²"), "Highest acceleration of planned motions."),
     optional("effort", Shape::Expression(EFFORT), "Highest torque or force, on the joint side of the gear."),
 ];
 const COM: Entry = optional("com", Shape::Vector(3, LENGTH), "Centre of mass in the frame of the body.");
@@ -254,6 +255,11 @@ pub(super) const MOTOR: &[Entry] = &[
     optional("position", Shape::Vector(3, LENGTH), "Position of the mass, in the previous link's frame."),
     optional("axis", Shape::Vector(3, ""), "Spin axis in the previous link's frame; the joint axis if left out."),
     optional("viscous", Shape::Expression("N m s"), "Viscous friction at the rotor; at the joint it acts as ratio² · viscous."),
+    optional(
+        "gain",
+        Shape::Expression("N m/A or N/A"),
+        "Torque or force at the joint per unit of measured current; no equation uses it.",
+    ),
 ];
 pub(super) const FRICTION: &[Entry] = &[
     usual("viscous", "viscous: 0.2", Shape::Expression("N m s or N s/m"), "Torque viscous · dq."),

@@ -145,6 +145,7 @@ impl Reader<'_> {
             limits: limits.map_or_else(LimitsDescription::default, |fields| LimitsDescription {
                 position: fields.get("position").and_then(|(key, node)| self.vector(node, key, "position", ["lowest", "highest"])),
                 velocity: self.field(&fields, "velocity"),
+                acceleration: self.field(&fields, "acceleration"),
                 effort: self.field(&fields, "effort"),
             }),
             link: fields.get("link").and_then(|(key, node)| self.body(node, key, "`link`", LINK)),
@@ -286,6 +287,7 @@ impl Reader<'_> {
             position: fields.get("position").and_then(|(key, node)| self.vector(node, key, "position", ["x", "y", "z"])),
             axis: fields.get("axis").and_then(|(key, node)| self.vector(node, key, "axis", ["x", "y", "z"])),
             viscous: self.field(&fields, "viscous"),
+            gain: self.field(&fields, "gain"),
         })
     }
 

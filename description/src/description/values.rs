@@ -46,6 +46,8 @@ pub enum Role {
     SpringRest,
     /// An armature.
     Armature,
+    /// The torque of a drive per unit of current.
+    Gain,
 }
 
 impl Role {
@@ -71,6 +73,7 @@ impl Role {
             Role::Stiffness => "the stiffness of a spring",
             Role::SpringRest => "the rest of a spring",
             Role::Armature => "an armature",
+            Role::Gain => "the gain of a motor",
         }
     }
 }
@@ -197,6 +200,7 @@ macro_rules! walk {
                     $three(to, Role::Axis, Fixed, & $($mutable)? joint.axis);
                     $three(to, Role::Limit, position, & $($mutable)? joint.limits.position);
                     $one(to, Role::Limit, rate, & $($mutable)? joint.limits.velocity);
+                    $one(to, Role::Limit, Fixed, & $($mutable)? joint.limits.acceleration);
                     $one(to, Role::Limit, effort, & $($mutable)? joint.limits.effort);
                     if let Some(link) = & $($mutable)? joint.link {
                         $body(to, link);
@@ -209,6 +213,7 @@ macro_rules! walk {
                         $three(to, Role::Axis, Fixed, & $($mutable)? motor.axis);
                         // The rotor turns, whatever the joint does.
                         $one(to, Role::Friction, Torque, & $($mutable)? motor.viscous);
+                        $one(to, Role::Gain, Fixed, & $($mutable)? motor.gain);
                     }
                     $one(to, Role::Friction, effort, & $($mutable)? joint.friction.viscous);
                     $one(to, Role::Friction, effort, & $($mutable)? joint.friction.coulomb);

@@ -147,8 +147,9 @@ fn limits(description: &LimitsDescription, kind: Option<JointKind>, called: &str
         None => Some(None),
     };
     let velocity = positive(description.velocity.as_ref(), "velocity", called, context);
+    let acceleration = positive(description.acceleration.as_ref(), "acceleration", called, context);
     let effort = positive(description.effort.as_ref(), "effort", called, context);
-    Some(Limits { position: position?, velocity: velocity?, effort: effort? })
+    Some(Limits { position: position?, velocity: velocity?, acceleration: acceleration?, effort: effort? })
 }
 
 /// A limit of a size; `Some(None)` without a limit.
@@ -201,6 +202,18 @@ fn motor(
         }),
         None => joint_axis,
     };
+    let gain = match &description.gain {
+        Some(given) => {
+            let gain = context.number(given)?;
+            if gain.sign() != Ordering::Greater {
+                let message = format!("the gain of the motor of joint {called} is not positive");
+                let help = "give the torque at the joint per ampere, above 0; a current with the other sign is turned in its log";
+                context.report(Code::NonPositiveLimit, given.span, message, format!("this is {}", text_of(&gain)), help);
+            }
+            Some(gain)
+        }
+        None => None,
+    };
     Some(Motor {
         ratio: ratio?,
         inertia: inertia?,
@@ -208,5 +221,6 @@ fn motor(
         position: position?,
         axis: axis?,
         viscous: viscous?,
+        gain,
     })
 }

@@ -158,8 +158,8 @@ impl<'d> Parameters<'d> {
                 Role::Axis => parameters.force(expression, expression.span, Reason::Axis),
                 _ => {}
             }
-            // A limit is a number anyway.
-            if role != Role::Limit {
+            // A limit is a number anyway, and so is a gain.
+            if !matches!(role, Role::Limit | Role::Gain) {
                 parameters.force_within(expression);
             }
         });

@@ -1,0 +1,302 @@
+//! `armgen identify`: from logs to the numbers of an arm.
+
+use std::fs::File;
+use std::io::BufReader;
+use std::path::{Path, PathBuf};
+
+use armgen_codegen::kinds::Scalar;
+use armgen_identify::arm::Arm;
+use armgen_identify::finding::{Code, Finding, Findings};
+use armgen_identify::identify::{identify, Identified, Input, Interval};
+use armgen_identify::judge::{judge, Judgement, Model};
+use armgen_identify::log::{self, Format, Log};
+use armgen_identify::options::{self, Load, LogOptions, Options};
+use armgen_identify::prepare::Friction;
+use armgen_identify::report;
+use serde_json::json;
+
+use super::verify::with_spinner;
+use crate::table::{Align, Table};
+use crate::{input, output, terminal, DONE, FAULTY, UNREADABLE};
+
+/// What is asked for.
+pub(crate) struct Asked {
+    pub(crate) logs: Vec<PathBuf>,
+    pub(crate) options: Option<PathBuf>,
+    pub(crate) validate: Vec<PathBuf>,
+    pub(crate) load: Option<f64>,
+    pub(crate) report: Option<PathBuf>,
+    pub(crate) skip_bad: bool,
+    pub(crate) accept_unexcited: bool,
+}
+
+pub(crate) fn run(file: &Path, asked: &Asked) -> u8 {
+    run_or_exit_code(file, asked).unwrap_or_else(|code| code)
+}
+
+fn run_or_exit_code(file: &Path, asked: &Asked) -> Result<u8, u8> {
+    let source = input::description(file)?;
+    let (manipulator, _) = input::manipulator(&source, Scalar::F64, input::Warnings::Counted)?;
+    let (chosen, folder) = options_of(asked)?;
+    let arm = with_spinner("deriving", || Arm::new(&manipulator, chosen.link_side)).ok_or_else(|| {
+        terminal::error(&format!("{}: nothing of this arm has mass, so there is nothing to identify", file.display()));
+        FAULTY
+    })?;
+    let format = Format {
+        joints: arm.joints.iter().map(|joint| (joint.name.clone(), joint.slides)).collect(),
+        columns: chosen.columns.clone(),
+        scales: chosen.scales,
+        skip_bad: chosen.skip_bad,
+        span: [None, None],
+    };
+    let mut findings = Findings::default();
+    let named = if asked.logs.is_empty() { chosen.logs.clone() } else { asked.logs.iter().map(|path| named(path)).collect() };
+    let mut inputs: Vec<Input> = Vec::new();
+    for (place, of) in named.iter().enumerate() {
+        let path = if asked.logs.is_empty() { folder.join(&of.file) } else { PathBuf::from(&of.file) };
+        let log = read(&path, &of.file, &Format { span: of.span, ..format.clone() }, &mut findings)?;
+        // The load of the command line is that of the last log.
+        let load = match asked.load.filter(|_| place + 1 == named.len()) {
+            Some(mass) => Load { is_there: true, mass: Some(mass), com: None },
+            None => of.load.clone(),
+        };
+        inputs.push(Input { log, session: of.session.clone(), load });
+    }
+    let mut held_out: Vec<Log> = Vec::new();
+    let validate = asked.validate.iter().cloned().chain(chosen.validate.iter().map(|path| folder.join(path)));
+    for path in validate {
+        held_out.push(read(&path, &path.display().to_string(), &format, &mut findings)?);
+    }
+    if findings.has_errors() {
+        return Err(refused(&findings));
+    }
+    if inputs.is_empty() {
+        return judged(&arm, held_out, asked, &findings);
+    }
+    let found = with_spinner("identifying", || identify(&arm, &inputs, &chosen, &mut findings));
+    let Some(found) = found.filter(|_| !findings.has_errors()) else { return Err(refused(&findings)) };
+    let model = model(&arm, &found);
+    let mut validation = Vec::new();
+    for log in held_out {
+        let log = in_torques(&arm, log, &found.gains)?;
+        validation.push((log.name.clone(), judge(&arm, &log, &model)));
+    }
+    terminal::diagnose(&findings.render());
+    let code = terminal::print(&table(&arm, &inputs, &found, &validation));
+    if let Some(folder) = &asked.report {
+        let report = report::json(&arm, &inputs, &found, &validation, &findings);
+        write_report(folder, &report)?;
+    }
+    if code == DONE && !found.unexcited.is_empty() && !asked.accept_unexcited {
+        terminal::error("the logs do not show all parameters: with `--accept-unexcited` those keep the values of the file");
+        return Ok(FAULTY);
+    }
+    Ok(code)
+}
+
+fn named(path: &Path) -> LogOptions {
+    LogOptions { file: path.display().to_string(), ..LogOptions::default() }
+}
+
+fn refused(findings: &Findings) -> u8 {
+    terminal::diagnose(&findings.render());
+    FAULTY
+}
+
+fn options_of(asked: &Asked) -> Result<(Options, PathBuf), u8> {
+    let (mut chosen, folder) = match &asked.options {
+        None => (Options::default(), PathBuf::new()),
+        Some(path) => {
+            let source = input::source(path)?;
+            let (chosen, diagnostics) = options::read(&source);
+            if !diagnostics.is_empty() {
+                terminal::diagnose(&diagnostics.render(&source, terminal::colour(&std::io::stderr())));
+            }
+            if diagnostics.has_errors() {
+                return Err(FAULTY);
+            }
+            (chosen, path.parent().map(Path::to_path_buf).unwrap_or_default())
+        }
+    };
+    chosen.skip_bad |= asked.skip_bad;
+    Ok((chosen, folder))
+}
+
+fn read(path: &Path, name: &str, format: &Format, findings: &mut Findings) -> Result<Log, u8> {
+    let file = File::open(path).map_err(|error| {
+        terminal::error(&format!("cannot read {}: {error}", path.display()));
+        UNREADABLE
+    })?;
+    let (log, found) = log::read(name, BufReader::with_capacity(1 << 20, file), format);
+    findings.extend(found);
+    Ok(log)
+}
+
+/// A log of currents in torques.
+fn in_torques(arm: &Arm, mut log: Log, gains: &[Interval]) -> Result<Log, u8> {
+    if !log.is_current {
+        return Ok(log);
+    }
+    for (j, column) in log.effort.iter_mut().enumerate() {
+        let Some(gain) = gains.get(j).map(|gain| gain.value).or(arm.joints[j].gain) else {
+            let text = format!("the log holds currents, and the motor of joint `{}` has no gain", arm.joints[j].name);
+            let finding = Finding::new(Code::NoGain, &log.name, text, "give `gain: ...` (N m/A) under `motor`");
+            terminal::diagnose(&finding.to_string());
+            return Err(FAULTY);
+        };
+        column.iter_mut().for_each(|x| *x *= gain);
+    }
+    Ok(log)
+}
+
+/// The arm without load, with the friction of the last session.
+fn model(arm: &Arm, found: &Identified) -> Model {
+    let mut friction = vec![[0.0; 6]; arm.dof()];
+    for of in found.friction.iter().filter(|of| of.session + 1 == found.sessions.len()) {
+        friction[of.joint][of.term as usize] = of.value.value;
+    }
+    Model {
+        pi: found.base.iter().map(|base| base.value).collect(),
+        friction,
+        velocities: found.velocities.clone(),
+        delays: Some(found.delays.clone()),
+        spreads: Some(found.spreads.clone()),
+        covariance: Some(found.covariance.clone()),
+    }
+}
+
+/// Judges the numbers of a description, identifies nothing.
+fn judged(arm: &Arm, logs: Vec<Log>, asked: &Asked, findings: &Findings) -> Result<u8, u8> {
+    if logs.is_empty() {
+        terminal::error("no log is given: name one to identify from, or one to judge by, `--validate LOG.csv`");
+        return Err(UNREADABLE);
+    }
+    let model = Model {
+        pi: (&arm.combination * arm.nominal()).as_slice().to_vec(),
+        friction: arm.joints.iter().map(|joint| joint.friction.map(Option::unwrap_or_default)).collect(),
+        velocities: arm.joints.iter().map(|joint| joint.stribeck_velocity).collect(),
+        delays: None,
+        spreads: None,
+        covariance: None,
+    };
+    let mut validation = Vec::new();
+    for log in logs {
+        let log = in_torques(arm, log, &[])?;
+        validation.push((log.name.clone(), judge(arm, &log, &model)));
+    }
+    terminal::diagnose(&findings.render());
+    let code = terminal::print(&residuals(arm, "validation", validation.iter().map(|(name, of)| (name.as_str(), of))));
+    if let Some(folder) = &asked.report {
+        let of: Vec<_> = validation.iter().map(|(file, of)| report::judgement(arm, file, of)).collect();
+        write_report(folder, &json!({"robot": arm.name, "validation": of, "diagnostics": report::findings(findings)}))?;
+    }
+    Ok(code)
+}
+
+fn write_report(folder: &Path, report: &serde_json::Value) -> Result<(), u8> {
+    let path = folder.join("report.json");
+    let text = serde_json::to_string_pretty(report).expect("strings and numbers always have a JSON form") + "\n";
+    output::write(&path, &text).map_err(|error| {
+        terminal::error(&format!("cannot write {}: {error}", path.display()));
+        UNREADABLE
+    })
+}
+
+/// So many significant digits.
+fn short(x: f64) -> String {
+    if x == 0.0 {
+        return "0".into();
+    }
+    let digits = (3 - x.abs().log10().floor() as i32).clamp(0, 9) as usize;
+    format!("{x:.digits$}")
+}
+
+fn percent(x: f64) -> String {
+    format!("{:.2} %", 100.0 * x)
+}
+
+fn range(of: &Interval) -> [String; 2] {
+    let range = if of.excited && of.sigma > 0.0 { format!("{} to {}", short(of.low), short(of.high)) } else { "kept".into() };
+    [short(of.value), range]
+}
+
+fn table(arm: &Arm, inputs: &[Input], found: &Identified, validation: &[(String, Judgement)]) -> String {
+    use Align::{Left, Right};
+    let mut text = format!(
+        "{}: {} rows of samples, cutoff {} Hz, condition {:.0}, {} stretches of time\n\n",
+        arm.name, found.used, found.cutoff, found.condition, found.blocks
+    );
+    let mut base = Table::new([("base parameter", Left), ("value", Right), ("3 sigma", Left), ("is", Left)]);
+    for (parameter, value) in arm.base.iter().zip(&found.base) {
+        let [value, range] = range(value);
+        base.row([parameter.name.clone(), value, range, parameter.meaning.clone()]);
+    }
+    text += &base.text();
+    let mut friction = Table::new([("joint", Left), ("friction", Left), ("value", Right), ("3 sigma", Left), ("session", Left)]);
+    for of in &found.friction {
+        let [value, range] = range(&of.value);
+        let joint = arm.joints[of.joint].name.clone();
+        friction.row([joint, of.term.key().to_owned(), value, range, found.sessions[of.session].clone()]);
+        if of.term == Friction::Stribeck {
+            let velocity = short(found.velocities[of.joint]);
+            friction.row([arm.joints[of.joint].name.clone(), "stribeck velocity".into(), velocity, String::new(), String::new()]);
+        }
+    }
+    text += &format!("\n{}", friction.text());
+    if !found.gains.is_empty() {
+        let mut gains = Table::new([("joint", Left), ("gain", Right), ("3 sigma", Left)]);
+        for (joint, value) in arm.joints.iter().zip(&found.gains) {
+            let [value, range] = range(value);
+            gains.row([joint.name.clone(), value, range]);
+        }
+        text += &format!("\n{}", gains.text());
+    }
+    for (log, ten) in &found.loads {
+        let mut load = Table::new([("load", Left), ("value", Right), ("3 sigma", Left)]);
+        for (name, value) in armgen_identify::body::NAMES.iter().zip(ten) {
+            if let Some(value) = value {
+                let [value, range] = range(value);
+                load.row([(*name).to_owned(), value, range]);
+            }
+        }
+        text += &format!("\n{}\n{}", inputs[*log].log.name, load.text());
+    }
+    let own = inputs.iter().map(|input| input.log.name.as_str()).zip(&found.judgements);
+    text += &format!("\n{}", residuals(arm, "log", own));
+    if !validation.is_empty() {
+        text += &format!("\n{}", residuals(arm, "validation", validation.iter().map(|(name, of)| (name.as_str(), of))));
+    }
+    for (_, words) in &found.unexcited {
+        text += &format!("\nnot shown by the logs: {words}\n");
+    }
+    text
+}
+
+fn residuals<'j>(arm: &Arm, what: &str, all: impl Iterator<Item = (&'j str, &'j Judgement)>) -> String {
+    use Align::{Left, Right};
+    let mut table = Table::new([
+        (what, Left),
+        ("joint", Left),
+        ("residual", Right),
+        ("of torque", Right),
+        ("moving", Right),
+        ("delay", Right),
+    ]);
+    let mut contacts = String::new();
+    for (name, of) in all {
+        for (j, joint) in arm.joints.iter().enumerate() {
+            let unit = if joint.slides { "N" } else { "N m" };
+            let delay = format!("{:.1} ms", 1e3 * of.delays[j]);
+            let cells = [format!("{} {unit}", short(of.rms[j])), percent(of.relative[j]), percent(of.moving[j]), delay];
+            table.row([name.to_owned(), joint.name.clone()].into_iter().chain(cells));
+        }
+        let mean = |x: &[f64]| percent(x.iter().sum::<f64>() / x.len() as f64);
+        table.row([name.to_owned(), "mean".into(), String::new(), mean(&of.relative), mean(&of.moving), String::new()]);
+        for contact in of.contacts.iter().filter(|_| what == "validation") {
+            let joints: Vec<&str> = contact.joints.iter().map(|&j| arm.joints[j].name.as_str()).collect();
+            contacts += &format!("{name}: contact from {:.2} s to {:.2} s at {}\n", contact.from, contact.to, joints.join(", "));
+        }
+    }
+    let gap = if contacts.is_empty() { "" } else { "\n" };
+    format!("{}{gap}{contacts}", table.text())
+}

@@ -1,0 +1,537 @@
+//! The estimation: delays, friction, drive gains, base parameters and their intervals, from filtered pieces of logs.
+
+use nalgebra::{DMatrix, DVector};
+
+use crate::arm::Arm;
+use crate::fit::{covariance, solve, solve_fast, Covariance, Equations, Gram, Row, Solution};
+use crate::options::Load;
+use crate::prepare::{Friction, Piece};
+
+/// A log as its equations need it.
+#[derive(Clone, Debug, Default)]
+pub struct Run {
+    /// Its session, by its place among the sessions.
+    pub session: usize,
+    /// Its load.
+    pub load: Load,
+    /// Whether it holds currents.
+    pub is_current: bool,
+}
+
+/// What a column of the equations is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Column {
+    /// A base parameter.
+    Base(usize),
+    /// One of the ten of the load of a log.
+    Load(usize, usize),
+    /// A term of friction of a joint in a session.
+    Friction(usize, usize, Friction),
+    /// The reciprocal of the correction of a drive gain.
+    Gain(usize),
+}
+
+/// The state of an estimation.
+#[derive(Clone, Debug)]
+pub struct Estimate<'a> {
+    /// The arm.
+    pub arm: &'a Arm,
+    /// Filtered stretches.
+    pub pieces: &'a [Piece],
+    /// The logs.
+    pub runs: &'a [Run],
+    /// Number of sessions.
+    pub sessions: usize,
+    /// All columns.
+    pub columns: Vec<Column>,
+    /// Columns that are identified.
+    pub active: Vec<usize>,
+    /// Columns with a given value.
+    pub fixed: Vec<(usize, f64)>,
+    /// s, by joint.
+    pub delays: Vec<f64>,
+    /// Velocities of Stribeck friction, by joint.
+    pub velocities: Vec<f64>,
+    /// Drive gains over those that torques were computed with, by joint.
+    pub corrections: Vec<f64>,
+    /// |g| at the full rate, state by state, by piece.
+    pub sizes: Vec<Vec<f64>>,
+    /// Values of all columns; 0 of those that are not active or fixed.
+    pub x: DVector<f64>,
+    /// Weights of the rows.
+    pub weights: Vec<f64>,
+    /// Robust spread of the residuals, N m or N, by joint.
+    pub spreads: Vec<f64>,
+}
+
+/// Least improvement, of the root of the mean square, that a delay or a term of friction must bring.
+const WORTH: f64 = 0.99;
+
+/// Blocks of time of the cross-validation.
+const FOLDS: usize = 5;
+
+impl<'a> Estimate<'a> {
+    /// Starts from nothing: no delay, and the simplest friction.
+    pub fn new(arm: &'a Arm, pieces: &'a [Piece], runs: &'a [Run], sessions: usize) -> Estimate<'a> {
+        let n = arm.dof();
+        let mut columns: Vec<Column> = (0..arm.base.len()).map(Column::Base).collect();
+        for (log, _) in runs.iter().enumerate().filter(|(_, run)| run.load.is_there) {
+            columns.extend((0..10).map(|k| Column::Load(log, k)));
+        }
+        for session in 0..sessions {
+            for joint in 0..n {
+                columns.extend(Friction::ALL.map(|term| Column::Friction(session, joint, term)));
+            }
+        }
+        columns.extend((0..n).map(Column::Gain));
+        let x = DVector::zeros(columns.len());
+        Estimate {
+            arm,
+            pieces,
+            runs,
+            sessions,
+            columns,
+            active: Vec::new(),
+            fixed: Vec::new(),
+            delays: vec![0.0; n],
+            velocities: arm.joints.iter().map(|joint| joint.stribeck_velocity).collect(),
+            corrections: vec![1.0; n],
+            sizes: vec![Vec::new(); pieces.len()],
+            x,
+            weights: Vec::new(),
+            spreads: vec![0.0; n],
+        }
+    }
+
+    /// The place of a column.
+    pub fn place(&self, column: Column) -> usize {
+        self.columns.iter().position(|known| *known == column).expect("a column of the equations")
+    }
+
+    /// Chooses the columns that are identified: base parameters, what of loads is unknown and felt, and terms of friction of joints.
+    pub fn activate(&mut self, terms: &dyn Fn(usize, Friction) -> bool) {
+        let felt = self.felt_of_loads();
+        let fixed: Vec<usize> = self.fixed.iter().map(|(place, _)| *place).collect();
+        self.active = (0..self.columns.len())
+            .filter(|place| !fixed.contains(place))
+            .filter(|&place| match self.columns[place] {
+                Column::Base(_) => true,
+                Column::Load(log, k) => {
+                    let load = &self.runs[log].load;
+                    let known = match k {
+                        0 => load.mass.is_some(),
+                        1..=3 => load.mass.is_some() && load.com.is_some(),
+                        _ => false,
+                    };
+                    felt[k] && !known
+                }
+                Column::Friction(_, joint, term) => terms(joint, term),
+                Column::Gain(_) => false,
+            })
+            .collect();
+    }
+
+    /// Which of the ten of a load the base parameters tell apart, taken in order.
+    fn felt_of_loads(&self) -> [bool; 10] {
+        let mut basis: Vec<DVector<f64>> = Vec::new();
+        std::array::from_fn(|k| {
+            let column: DVector<f64> = self.arm.load.column(k).into_owned();
+            let size = column.norm();
+            let rest = basis.iter().fold(column, |rest, unit| &rest - unit * unit.dot(&rest));
+            let felt = rest.norm() > 1e-9 * size.max(1e-9);
+            if felt {
+                basis.push(rest.normalize());
+            }
+            felt
+        })
+    }
+
+    /// What of the load of a log is known, as ten.
+    pub fn known_load(&self, log: usize) -> [f64; 10] {
+        let load = &self.runs[log].load;
+        let mut ten = [0.0; 10];
+        if let Some(mass) = load.mass {
+            ten[0] = mass;
+            for (k, c) in load.com.iter().flatten().enumerate() {
+                ten[1 + k] = mass * c;
+            }
+        }
+        ten
+    }
+
+    /// The equations of all columns, and by row the torque that is known.
+    pub fn equations(&self) -> (Equations, Vec<f64>) {
+        let (n, base) = (self.arm.dof(), self.arm.base.len());
+        let columns = self.columns.len();
+        let mut equations = Equations { columns, ..Equations::default() };
+        let mut known = Vec::new();
+        for (place, piece) in self.pieces.iter().enumerate() {
+            let run = &self.runs[piece.log];
+            let tau: Vec<Vec<f64>> = (0..n).map(|j| piece.delayed(j, self.delays[j])).collect();
+            let friction: Vec<Vec<f64>> = (0..n)
+                .flat_map(|j| Friction::ALL.map(|term| piece.friction(j, term, self.velocities[j], &self.sizes[place])))
+                .collect();
+            let loads = run.load.is_there.then(|| self.place(Column::Load(piece.log, 0)));
+            let known_load = self.known_load(piece.log);
+            let first_friction = self.place(Column::Friction(run.session, 0, Friction::Viscous));
+            for row in 0..piece.kept.len() {
+                for j in 0..n {
+                    let start = equations.a.len();
+                    equations.a.resize(start + columns, 0.0);
+                    let a = &mut equations.a[start..];
+                    let y = &piece.y[(row * n + j) * base..(row * n + j + 1) * base];
+                    a[..base].copy_from_slice(y);
+                    let mut of_load = 0.0;
+                    if let Some(first) = loads {
+                        for k in 0..10 {
+                            let entry: f64 = y.iter().zip(self.arm.load.column(k).iter()).map(|(y, l)| y * l).sum();
+                            a[first + k] = entry;
+                            of_load += entry * known_load[k];
+                        }
+                    }
+                    for term in 0..6 {
+                        a[first_friction + 6 * j + term] = friction[6 * j + term][row];
+                    }
+                    let fixed: f64 = self.fixed.iter().map(|(place, value)| a[*place] * value).sum();
+                    let this = piece.known[row * n + j] + of_load;
+                    equations.b.push(tau[j][row] * self.corrections[j] - this - fixed);
+                    known.push(this);
+                    let counts = piece.counts[row * n + j];
+                    equations.rows.push(Row { joint: j, log: piece.log, time: piece.time(row), counts });
+                }
+            }
+        }
+        (equations, known)
+    }
+
+    /// Base parameters of the arm without load.
+    pub fn pi(&self) -> Vec<f64> {
+        self.x.as_slice()[..self.arm.base.len()].to_vec()
+    }
+
+    /// Renews |g| from the base parameters.
+    pub fn renew_sizes(&mut self) {
+        for (place, piece) in self.pieces.iter().enumerate() {
+            let mut pi = DVector::from_vec(self.pi());
+            if self.runs[piece.log].load.is_there {
+                let mut ten = DVector::from_row_slice(&self.known_load(piece.log));
+                for k in 0..10 {
+                    ten[k] += self.x[self.place(Column::Load(piece.log, k))];
+                }
+                pi += &self.arm.load * ten;
+            }
+            self.sizes[place] = self.arm.gravity(&piece.q, pi.as_slice());
+        }
+    }
+
+    /// Robust weights and the solution of the active columns.
+    pub fn fit(&mut self, equations: &Equations) -> Gram {
+        let n = self.arm.dof();
+        let (weights, spreads) = equations.robust(&self.active, n);
+        let gram = equations.gram(&weights).of(&self.active);
+        let x = solve_fast(&gram);
+        self.take(&x);
+        (self.weights, self.spreads) = (weights, spreads);
+        gram
+    }
+
+    fn take(&mut self, x: &DVector<f64>) {
+        self.x.fill(0.0);
+        for (&place, value) in self.active.iter().zip(x.iter()) {
+            self.x[place] = *value;
+        }
+        for &(place, value) in &self.fixed {
+            self.x[place] = value;
+        }
+    }
+
+    /// Delays of torques behind positions that lower the squares of their joint, all else fitted anew; s.
+    pub fn delays(&mut self) {
+        let (equations, known) = self.equations();
+        let n = self.arm.dof();
+        let grams = equations.grams(&self.weights, n, |k| equations.rows[k].joint);
+        let mut whole = Gram::zero(equations.columns);
+        grams.iter().for_each(|gram| whole.add(gram));
+        let whole = whole.of(&self.active);
+        for j in 0..n {
+            let own = grams[j].of(&self.active);
+            let of_joint: Vec<usize> = (0..equations.rows.len()).filter(|&k| equations.rows[k].joint == j).collect();
+            let cost = |delay: f64| {
+                let mut tau = Vec::new();
+                self.pieces.iter().for_each(|piece| tau.extend(piece.delayed(j, delay)));
+                let (mut g, mut bb) = (DVector::zeros(self.active.len()), 0.0);
+                for (&k, tau) in of_joint.iter().zip(&tau) {
+                    let w = self.weights[k];
+                    if w > 0.0 {
+                        let row = equations.row(k);
+                        let fixed: f64 = self.fixed.iter().map(|(place, value)| row[*place] * value).sum();
+                        let b = tau * self.corrections[j] - known[k] - fixed;
+                        for (place, &i) in self.active.iter().enumerate() {
+                            g[place] += w * row[i] * b;
+                        }
+                        bb += w * b * b;
+                    }
+                }
+                let total = Gram { h: whole.h.clone(), g: &whole.g - &own.g + &g, bb: 0.0 };
+                let x = solve_fast(&total);
+                Gram { h: own.h.clone(), g, bb }.squares(&x)
+            };
+            let step = 2.5e-3;
+            let grid: Vec<f64> = (-4..=10).map(|k| f64::from(k) * step).collect();
+            let costs: Vec<f64> = grid.iter().map(|&delay| cost(delay)).collect();
+            let best = (0..grid.len()).min_by(|&a, &b| costs[a].total_cmp(&costs[b])).expect("a grid");
+            let mut delay = grid[best];
+            if best > 0 && best + 1 < grid.len() {
+                let (a, b, c) = (costs[best - 1], costs[best], costs[best + 1]);
+                let bend = a - 2.0 * b + c;
+                if bend > 0.0 {
+                    delay += 0.5 * step * (a - c) / bend;
+                }
+            }
+            self.delays[j] = if costs[best] < WORTH * WORTH * costs[4] { delay } else { 0.0 };
+        }
+    }
+
+    /// Whether offset and load friction of a joint can be told from its other torques, at random states.
+    pub fn tells_apart(&self, joint: usize) -> (bool, bool) {
+        let n = self.arm.dof();
+        let mut seed = 1u64;
+        let mut draw = || {
+            seed = seed.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+            (seed >> 11) as f64 / (1u64 << 53) as f64 * 2.0 - 1.0
+        };
+        let states = self.arm.base.len() + 20;
+        let mut of = |scale: f64| (0..states * n).map(|_| scale * draw()).collect::<Vec<f64>>();
+        let (q, dq, ddq) = (of(2.0), of(1.5), of(3.0));
+        let y = self.arm.regressor(&q, &dq, &ddq);
+        let base = self.arm.base.len();
+        let a = DMatrix::from_row_slice(states * n, base, &y);
+        let b = DVector::from_fn(states * n, |k, _| if k % n == joint { 1.0 } else { 0.0 });
+        let h = a.transpose() * &a;
+        let gram = Gram { g: a.transpose() * &b, bb: b.dot(&b), h };
+        let x = solve_fast(&gram);
+        let offset = (&b - &a * x).norm() > 1e-6 * b.norm();
+        let pi = if self.x.as_slice()[..base].iter().any(|x| *x != 0.0) {
+            self.pi()
+        } else {
+            (&self.arm.combination * self.arm.nominal()).as_slice().to_vec()
+        };
+        let g: Vec<f64> = self.arm.gravity(&q, &pi).into_iter().skip(joint).step_by(n).map(f64::abs).collect();
+        let (least, most) = g.iter().fold((f64::INFINITY, 0.0f64), |(a, b), g| (a.min(*g), b.max(*g)));
+        let greatest = self.arm.gravity(&q, &pi).into_iter().fold(0.0f64, |a, g| a.max(g.abs()));
+        let load = most - least > 1e-6 * most && most > 1e-6 * greatest;
+        (offset, load)
+    }
+
+    /// Adds terms of friction one at a time where cross-validation in blocks of time asks for them; `chosen` says what there is.
+    pub fn choose(&mut self, chosen: &mut Vec<Vec<Friction>>, candidate: Friction) {
+        let n = self.arm.dof();
+        let (equations, _) = self.equations();
+        let bounds: Vec<(f64, f64)> = (0..self.runs.len())
+            .map(|log| {
+                let times = equations.rows.iter().filter(|row| row.log == log).map(|row| row.time);
+                times.fold((f64::INFINITY, f64::NEG_INFINITY), |(a, b), t| (a.min(t), b.max(t)))
+            })
+            .collect();
+        let fold = |k: usize| {
+            let row = &equations.rows[k];
+            let (start, end) = bounds[row.log];
+            ((FOLDS as f64 * (row.time - start) / (end - start).max(1e-9)) as usize).min(FOLDS - 1)
+        };
+        let grams = equations.grams(&self.weights, n * FOLDS, |k| equations.rows[k].joint * FOLDS + fold(k));
+        let mut folds = vec![Gram::zero(equations.columns); FOLDS];
+        for (class, gram) in grams.iter().enumerate() {
+            folds[class % FOLDS].add(gram);
+        }
+        let mut whole = Gram::zero(equations.columns);
+        folds.iter().for_each(|gram| whole.add(gram));
+        let score = |active: &[usize], joint: usize| -> f64 {
+            (0..FOLDS)
+                .map(|f| {
+                    let mut rest = whole.of(active);
+                    rest.subtract(&folds[f].of(active));
+                    grams[joint * FOLDS + f].of(active).squares(&solve_fast(&rest))
+                })
+                .sum()
+        };
+        for joint in 0..n {
+            if chosen[joint].contains(&candidate) {
+                continue;
+            }
+            let before = score(&self.active, joint);
+            let mut active = self.active.clone();
+            for session in 0..self.sessions {
+                let place = self.place(Column::Friction(session, joint, candidate));
+                if self.fixed.iter().all(|(fixed, _)| *fixed != place) {
+                    active.push(place);
+                }
+            }
+            active.sort_unstable();
+            if active.len() > self.active.len() && score(&active, joint) < WORTH * WORTH * before {
+                chosen[joint].push(candidate);
+                self.active = active;
+            }
+        }
+    }
+
+    /// The velocity of Stribeck friction of a joint, by golden section over its logarithm in 0.01 to 1.
+    pub fn stribeck_velocity(&mut self, joint: usize) {
+        let (equations, _) = self.equations();
+        let residuals = equations.residuals(&self.active, &DVector::from_fn(self.active.len(), |k, _| self.x[self.active[k]]));
+        let of: Vec<usize> = (0..residuals.len()).filter(|&k| equations.rows[k].joint == joint).collect();
+        let first = self.place(Column::Friction(0, joint, Friction::Viscous));
+        let cost = |log: f64| {
+            let mut column = Vec::new();
+            for (piece, sizes) in self.pieces.iter().zip(&self.sizes) {
+                column.extend(piece.friction(joint, Friction::Stribeck, log.exp(), sizes));
+            }
+            let mut small = Equations { columns: 4, ..Equations::default() };
+            let mut weights = Vec::new();
+            for (&k, stribeck) in of.iter().zip(&column) {
+                let row = equations.row(k);
+                small.a.extend([row[first], row[first + 1], 1.0, *stribeck]);
+                small.b.push(residuals[k]);
+                small.rows.push(equations.rows[k]);
+                weights.push(self.weights[k]);
+            }
+            let gram = small.gram(&weights);
+            gram.squares(&solve_fast(&gram))
+        };
+        let ratio = 0.5 * (5f64.sqrt() - 1.0);
+        let (mut low, mut high) = (0.01f64.ln(), 0.0);
+        let (mut a, mut b) = (high - ratio * (high - low), low + ratio * (high - low));
+        let (mut cost_a, mut cost_b) = (cost(a), cost(b));
+        for _ in 0..10 {
+            if cost_a < cost_b {
+                (high, b, cost_b) = (b, a, cost_a);
+                a = high - ratio * (high - low);
+                cost_a = cost(a);
+            } else {
+                (low, a, cost_a) = (a, b, cost_b);
+                b = low + ratio * (high - low);
+                cost_b = cost(b);
+            }
+        }
+        self.velocities[joint] = (0.5 * (low + high)).exp();
+    }
+
+    /// The solution with intervals, for the columns that are active.
+    pub fn finish(&mut self) -> (Equations, Solution, Covariance) {
+        let n = self.arm.dof();
+        let (equations, _) = self.equations();
+        self.fit(&equations);
+        let gram = equations.gram(&self.weights).of(&self.active);
+        let mut start = DVector::zeros(self.active.len());
+        let nominal = &self.arm.combination * self.arm.nominal();
+        for (k, &place) in self.active.iter().enumerate() {
+            if let Column::Base(base) = self.columns[place] {
+                start[k] = nominal[base];
+            }
+        }
+        let solution = solve(&gram, &start);
+        self.take(&solution.x);
+        let residuals = equations.residuals(&self.active, &solution.x);
+        let covariance = covariance(&equations, &self.active, &residuals, &self.weights, &solution.inverse, n);
+        (equations, solution, covariance)
+    }
+
+    /// Drive gains by maximum likelihood in the currents: Gauss-Newton in (1/K, pi, f), noise on the currents.
+    ///
+    /// The torque of the drive with the gain at hand is `b`; `b = (Y pi + known)/c + F f'` with the correction c and `f = c f'`. The result are the
+    /// corrections with sigmas, and the covariance of the active columns with friction scaled back.
+    pub fn gains(&mut self, held: &[bool]) -> (Vec<f64>, Vec<f64>, DMatrix<f64>, f64) {
+        let n = self.arm.dof();
+        self.corrections = vec![1.0; n];
+        let (mut equations, known) = self.equations();
+        let fixed: Vec<f64> = (0..equations.b.len())
+            .map(|k| self.fixed.iter().map(|(place, value)| equations.row(k)[*place] * value).sum())
+            .collect();
+        // The torque as it is measured, and friction of given values, which is no part of the scaled torque.
+        let measured: Vec<f64> = (0..equations.b.len()).map(|k| equations.b[k] + known[k]).collect();
+        let is_dynamic = |column: Column| matches!(column, Column::Base(_) | Column::Load(..));
+        let mut active = self.active.clone();
+        active.extend((0..n).filter(|&j| !held[j]).map(|j| self.place(Column::Gain(j))));
+        let columns = equations.columns;
+        let plain: Vec<f64> = equations.a.clone();
+        let mut reciprocal = vec![1.0; n];
+        let gram_x: DVector<f64> = DVector::from_fn(self.active.len(), |k, _| self.x[self.active[k]]);
+        let mut x = gram_x;
+        let mut inverse = DMatrix::zeros(0, 0);
+        let mut residuals = vec![0.0; equations.b.len()];
+        let mut spreads = self.spreads.clone();
+        for round in 0..25 {
+            for k in 0..equations.b.len() {
+                let j = equations.rows[k].joint;
+                let row = &plain[k * columns..(k + 1) * columns];
+                let (mut dynamic, mut friction) = (known[k], fixed[k]);
+                for (&place, value) in self.active.iter().zip(x.iter()) {
+                    if is_dynamic(self.columns[place]) {
+                        dynamic += row[place] * value;
+                        equations.a[k * columns + place] = row[place] * reciprocal[j];
+                    } else {
+                        friction += row[place] * value;
+                    }
+                }
+                residuals[k] = measured[k] + fixed[k] - dynamic * reciprocal[j] - friction;
+                equations.a[k * columns + self.place(Column::Gain(j))] = dynamic;
+            }
+            equations.b.clone_from(&residuals);
+            if round < 6 {
+                (self.weights, spreads) = equations.weights(&residuals, n);
+            }
+            let gram = equations.gram(&self.weights).of(&active);
+            let solution = solve(&gram, &DVector::zeros(active.len()));
+            inverse = solution.inverse;
+            let mut step = solution.x;
+            // A reciprocal stays positive.
+            for (place, j) in (0..n).filter(|&j| !held[j]).enumerate() {
+                let delta = step[self.active.len() + place];
+                if reciprocal[j] + delta < 0.2 * reciprocal[j] {
+                    step *= 0.8 * reciprocal[j] / -delta;
+                }
+            }
+            let mut largest = 0.0f64;
+            for k in 0..self.active.len() {
+                x[k] += step[k];
+            }
+            for (place, j) in (0..n).filter(|&j| !held[j]).enumerate() {
+                let delta = step[self.active.len() + place];
+                reciprocal[j] += delta;
+                largest = largest.max((delta / reciprocal[j]).abs());
+            }
+            if largest < 1e-9 && round >= 6 {
+                break;
+            }
+        }
+        let found = covariance(&equations, &active, &residuals, &self.weights, &inverse, n);
+        // From (x', 1/c) to (x, c): friction is c f'.
+        let mut jacobian = DMatrix::zeros(active.len(), active.len());
+        let corrections: Vec<f64> = reciprocal.iter().map(|r| 1.0 / r).collect();
+        let free: Vec<usize> = (0..n).filter(|&j| !held[j]).collect();
+        for (k, &place) in active.iter().enumerate() {
+            jacobian[(k, k)] = 1.0;
+            match self.columns[place] {
+                Column::Friction(_, j, _) => {
+                    jacobian[(k, k)] = corrections[j];
+                    if let Some(gain) = free.iter().position(|&other| other == j) {
+                        jacobian[(k, self.active.len() + gain)] = -x[k] * corrections[j] * corrections[j];
+                    }
+                    x[k] *= corrections[j];
+                }
+                Column::Gain(j) => jacobian[(k, k)] = -corrections[j] * corrections[j],
+                _ => {}
+            }
+        }
+        let matrix = &jacobian * found.matrix * jacobian.transpose();
+        let mut sigmas = vec![0.0; n];
+        for (place, &j) in free.iter().enumerate() {
+            let k = self.active.len() + place;
+            sigmas[j] = matrix[(k, k)].max(0.0).sqrt();
+        }
+        self.spreads = spreads.iter().zip(&corrections).map(|(s, c)| s * c).collect();
+        self.take(&x);
+        self.corrections.clone_from(&corrections);
+        let of_x = matrix.view((0, 0), (self.active.len(), self.active.len())).into_owned();
+        (corrections, sigmas, of_x, found.reach)
+    }
+}

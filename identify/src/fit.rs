@@ -1,0 +1,363 @@
+//! Weighted least squares on rows of joints: Gram matrices, robust weights, standard errors that hold for coloured residuals.
+
+use nalgebra::{DMatrix, DVector, SymmetricEigen};
+
+use crate::signal::spread;
+
+/// A row of the equations: a joint at a time.
+#[derive(Clone, Copy, Debug)]
+pub struct Row {
+    /// The joint.
+    pub joint: usize,
+    /// The log.
+    pub log: usize,
+    /// The stamp, s.
+    pub time: f64,
+    /// Whether it counts.
+    pub counts: bool,
+}
+
+/// Equations A x = b, row by row.
+#[derive(Clone, Debug, Default)]
+pub struct Equations {
+    /// Columns.
+    pub columns: usize,
+    /// A, row by row.
+    pub a: Vec<f64>,
+    /// b.
+    pub b: Vec<f64>,
+    /// Where the rows come from; those of one log in the order of time.
+    pub rows: Vec<Row>,
+}
+
+/// A'WA, A'Wb, b'Wb.
+#[derive(Clone, Debug)]
+pub struct Gram {
+    /// A'WA.
+    pub h: DMatrix<f64>,
+    /// A'Wb.
+    pub g: DVector<f64>,
+    /// b'Wb.
+    pub bb: f64,
+}
+
+impl Gram {
+    /// Nothing yet.
+    pub fn zero(columns: usize) -> Gram {
+        Gram { h: DMatrix::zeros(columns, columns), g: DVector::zeros(columns), bb: 0.0 }
+    }
+
+    /// The sum.
+    pub fn add(&mut self, other: &Gram) {
+        self.h += &other.h;
+        self.g += &other.g;
+        self.bb += other.bb;
+    }
+
+    /// The difference.
+    pub fn subtract(&mut self, other: &Gram) {
+        self.h -= &other.h;
+        self.g -= &other.g;
+        self.bb -= other.bb;
+    }
+
+    /// The part of some columns.
+    pub fn of(&self, active: &[usize]) -> Gram {
+        Gram {
+            h: DMatrix::from_fn(active.len(), active.len(), |i, j| self.h[(active[i], active[j])]),
+            g: DVector::from_fn(active.len(), |i, _| self.g[active[i]]),
+            bb: self.bb,
+        }
+    }
+
+    /// Sum of squares of the weighted residuals of x.
+    pub fn squares(&self, x: &DVector<f64>) -> f64 {
+        (self.bb - 2.0 * self.g.dot(x) + x.dot(&(&self.h * x))).max(0.0)
+    }
+}
+
+/// Directions of the scaled equations, and their inverse without those that the rows do not show.
+#[derive(Clone, Debug)]
+pub struct Solution {
+    /// The least squares solution; along directions not shown, `start`.
+    pub x: DVector<f64>,
+    /// The pseudo-inverse of A'WA over the directions that are shown.
+    pub inverse: DMatrix<f64>,
+    /// Largest over least singular value of the scaled W^(1/2) A, those not shown included.
+    pub condition: f64,
+    /// Mean of the logarithms of the eigenvalues of the scaled A'WA that are shown.
+    pub log_det_per_column: f64,
+    /// Directions that are not shown, as unit vectors over scaled columns.
+    pub hidden: Vec<DVector<f64>>,
+}
+
+/// Directions with singular values below the largest over this are not shown.
+pub const LARGEST_CONDITION: f64 = 1e6;
+
+/// Solves, with directions that are not shown left at `start`.
+pub fn solve(gram: &Gram, start: &DVector<f64>) -> Solution {
+    let n = gram.g.len();
+    let scale = DVector::from_fn(n, |i, _| if gram.h[(i, i)] > 0.0 { 1.0 / gram.h[(i, i)].sqrt() } else { 0.0 });
+    let scaled = DMatrix::from_fn(n, n, |i, j| gram.h[(i, j)] * scale[i] * scale[j]);
+    let eigen = SymmetricEigen::new(scaled);
+    let largest = eigen.eigenvalues.iter().copied().fold(0.0, f64::max);
+    let least = eigen.eigenvalues.iter().copied().fold(f64::INFINITY, f64::min);
+    let shown = |i: usize| eigen.eigenvalues[i] > largest / (LARGEST_CONDITION * LARGEST_CONDITION);
+    let mut inverse = DMatrix::zeros(n, n);
+    let mut hidden = Vec::new();
+    let (mut logs, mut count) = (0.0, 0);
+    for i in 0..n {
+        let direction = eigen.eigenvectors.column(i);
+        if shown(i) {
+            let scaled = direction.component_mul(&scale);
+            inverse.ger(1.0 / eigen.eigenvalues[i], &scaled, &scaled, 1.0);
+            logs += eigen.eigenvalues[i].ln();
+            count += 1;
+        } else {
+            hidden.push(direction.into_owned());
+        }
+    }
+    let mut x = start + &inverse * (&gram.g - &gram.h * start);
+    // One step of refinement: the columns differ by many powers of ten.
+    x += &inverse * (&gram.g - &gram.h * &x);
+    Solution {
+        x,
+        inverse,
+        condition: (largest / least.max(0.0)).sqrt(),
+        log_det_per_column: logs / f64::from(count.max(1)),
+        hidden,
+    }
+}
+
+/// Solves fast, for comparisons: directions that are not shown are damped.
+pub fn solve_fast(gram: &Gram) -> DVector<f64> {
+    let n = gram.g.len();
+    let scale = DVector::from_fn(n, |i, _| if gram.h[(i, i)] > 0.0 { 1.0 / gram.h[(i, i)].sqrt() } else { 0.0 });
+    let mut scaled = DMatrix::from_fn(n, n, |i, j| gram.h[(i, j)] * scale[i] * scale[j]);
+    (0..n).for_each(|i| scaled[(i, i)] += 1e-11);
+    let g = gram.g.component_mul(&scale);
+    match scaled.cholesky() {
+        Some(factor) => factor.solve(&g).component_mul(&scale),
+        None => DVector::zeros(n),
+    }
+}
+
+impl Equations {
+    /// A row.
+    pub fn row(&self, k: usize) -> &[f64] {
+        &self.a[k * self.columns..(k + 1) * self.columns]
+    }
+
+    /// Gram matrices by class of row: `class` gives the class of a row, below `classes`.
+    pub fn grams(&self, weights: &[f64], classes: usize, class: impl Fn(usize) -> usize) -> Vec<Gram> {
+        let n = self.columns;
+        let mut all = vec![Gram::zero(n); classes];
+        let mut filled = Vec::with_capacity(n);
+        for (k, &w) in weights.iter().enumerate().filter(|(_, w)| **w > 0.0) {
+            let (row, b) = (self.row(k), self.b[k]);
+            let Gram { h, g, bb } = &mut all[class(k)];
+            filled.clear();
+            filled.extend((0..n).filter(|&i| row[i] != 0.0));
+            let h = h.as_mut_slice();
+            for (place, &i) in filled.iter().enumerate() {
+                let wa = w * row[i];
+                g[i] += wa * b;
+                for &j in &filled[place..] {
+                    h[i * n + j] += wa * row[j];
+                }
+            }
+            *bb += w * b * b;
+        }
+        for gram in &mut all {
+            for i in 0..n {
+                for j in 0..i {
+                    // Column i of the slice holds the entries below the diagonal.
+                    gram.h[(j, i)] = gram.h[(i, j)];
+                }
+            }
+        }
+        all
+    }
+
+    /// A'WA, A'Wb, b'Wb.
+    pub fn gram(&self, weights: &[f64]) -> Gram {
+        self.grams(weights, 1, |_| 0).pop().expect("one class")
+    }
+
+    /// b - A x.
+    pub fn residuals(&self, active: &[usize], x: &DVector<f64>) -> Vec<f64> {
+        (0..self.b.len())
+            .map(|k| {
+                let row = self.row(k);
+                self.b[k] - active.iter().zip(x.iter()).map(|(&i, x)| row[i] * x).sum::<f64>()
+            })
+            .collect()
+    }
+
+    /// Robust weights of residuals: 1/s_j² times Huber's weight at 1.5 s_j; and s_j, by joint.
+    pub fn weights(&self, residuals: &[f64], joints: usize) -> (Vec<f64>, Vec<f64>) {
+        let spreads: Vec<f64> = (0..joints)
+            .map(|j| {
+                let of: Vec<f64> =
+                    (0..self.b.len()).filter(|&k| self.rows[k].joint == j && self.rows[k].counts).map(|k| residuals[k]).collect();
+                let size: Vec<f64> =
+                    (0..self.b.len()).filter(|&k| self.rows[k].joint == j && self.rows[k].counts).map(|k| self.b[k]).collect();
+                // An exact fit has residuals of rounding alone.
+                spread(&of).max(1e-9 * crate::signal::rms(&size)).max(f64::MIN_POSITIVE.sqrt())
+            })
+            .collect();
+        let weights = (0..self.b.len())
+            .map(|k| {
+                let s = spreads[self.rows[k].joint];
+                if !self.rows[k].counts {
+                    return 0.0;
+                }
+                (1.5 * s / residuals[k].abs().max(1.5 * s)) / (s * s)
+            })
+            .collect();
+        (weights, spreads)
+    }
+
+    /// Five rounds of robust weights; the weights and the spreads.
+    pub fn robust(&self, active: &[usize], joints: usize) -> (Vec<f64>, Vec<f64>) {
+        let mut weights: Vec<f64> = {
+            let size: Vec<f64> = (0..joints)
+                .map(|j| {
+                    let of: Vec<f64> = self.rows.iter().zip(&self.b).filter(|(row, _)| row.joint == j).map(|(_, b)| *b).collect();
+                    crate::signal::rms(&of).max(1e-12)
+                })
+                .collect();
+            self.rows.iter().map(|row| if row.counts { 1.0 / (size[row.joint] * size[row.joint]) } else { 0.0 }).collect()
+        };
+        let mut spreads = vec![1.0; joints];
+        for _ in 0..5 {
+            let x = solve_fast(&self.gram(&weights).of(active));
+            (weights, spreads) = self.weights(&self.residuals(active, &x), joints);
+        }
+        (weights, spreads)
+    }
+}
+
+/// The covariance of a solution, and what it rests on.
+#[derive(Clone, Debug)]
+pub struct Covariance {
+    /// The sandwich.
+    pub matrix: DMatrix<f64>,
+    /// Blocks of time.
+    pub blocks: usize,
+    /// Half the width of a three-sigma interval, in sigma: more than 3 where there are few blocks.
+    pub reach: f64,
+}
+
+/// Fewer blocks than this give Student's t.
+pub const FEW_BLOCKS: f64 = 20.0;
+
+/// The sandwich (A'WA)^-1 (sum over blocks of time g_b g_b') (A'WA)^-1, g_b the score of a block over all joints. A block lasts 1 s or five
+/// times the correlation time of the residuals, whichever is longer. The factor n/(n - p/joints) is for few blocks.
+pub fn covariance(
+    equations: &Equations,
+    active: &[usize],
+    residuals: &[f64],
+    weights: &[f64],
+    inverse: &DMatrix<f64>,
+    joints: usize,
+) -> Covariance {
+    let length = (5.0 * correlation_time(equations, residuals, weights, joints)).max(1.0);
+    let mut scores: Vec<DVector<f64>> = Vec::new();
+    let mut block: Option<(usize, f64)> = None;
+    for (k, row) in equations.rows.iter().enumerate() {
+        let inside = block.is_some_and(|(log, start)| log == row.log && (0.0..length).contains(&(row.time - start)));
+        if !inside {
+            block = Some((row.log, row.time));
+            scores.push(DVector::zeros(active.len()));
+        }
+        if weights[k] > 0.0 {
+            let score = scores.last_mut().expect("a block");
+            let a = equations.row(k);
+            for (place, &i) in active.iter().enumerate() {
+                score[place] += weights[k] * residuals[k] * a[i];
+            }
+        }
+    }
+    let blocks = scores.len();
+    let mut meat = DMatrix::zeros(active.len(), active.len());
+    for score in &scores {
+        meat.ger(1.0, score, score, 1.0);
+    }
+    let lost = active.len() as f64 / joints as f64;
+    // With fewer blocks than unknowns of a joint nothing is left to estimate from: then one in three counts.
+    let free = (blocks as f64 - lost).max(blocks as f64 / 3.0).max(1.0);
+    let matrix = inverse * meat * inverse * (blocks as f64 / free);
+    let reach = if free < FEW_BLOCKS { student(free) } else { 3.0 };
+    Covariance { matrix, blocks, reach }
+}
+
+/// The time after which the autocorrelation of the residuals stays below 1/e, the longest of the joints, s.
+fn correlation_time(equations: &Equations, residuals: &[f64], weights: &[f64], joints: usize) -> f64 {
+    (0..joints)
+        .map(|j| {
+            let of: Vec<(f64, f64)> = (0..residuals.len())
+                .filter(|&k| equations.rows[k].joint == j && weights[k] > 0.0)
+                .map(|k| (equations.rows[k].time, residuals[k]))
+                .collect();
+            let power: f64 = of.iter().map(|(_, r)| r * r).sum();
+            let lags = (1..of.len().min(200)).find(|&lag| {
+                let sum: f64 = of.windows(lag + 1).map(|w| w[0].1 * w[lag].1).sum();
+                sum < power / std::f64::consts::E
+            });
+            let step = crate::signal::median(&of.windows(2).map(|w| w[1].0 - w[0].0).collect::<Vec<_>>());
+            lags.unwrap_or(1) as f64 * step.max(0.0)
+        })
+        .fold(0.0, f64::max)
+}
+
+/// The quantile of Student's t that as much lies within as within 3 sigma of a normal distribution, 99.73 %.
+pub fn student(freedom: f64) -> f64 {
+    let inside = 0.997_300_203_936_74;
+    // With t = sqrt(f) tan(u) the density is cos(u)^(f-1), over -pi/2 to pi/2.
+    let density = |u: f64| u.cos().max(0.0).powf(freedom - 1.0);
+    let integral = |to: f64| {
+        let steps = 2000;
+        let h = to / f64::from(steps);
+        let sum: f64 = (0..=steps)
+            .map(|k| {
+                density(f64::from(k) * h)
+                    * if k == 0 || k == steps {
+                        1.0
+                    } else if k % 2 == 1 {
+                        4.0
+                    } else {
+                        2.0
+                    }
+            })
+            .sum();
+        sum * h / 3.0
+    };
+    let whole = integral(std::f64::consts::FRAC_PI_2);
+    let (mut low, mut high) = (0.0, std::f64::consts::FRAC_PI_2);
+    for _ in 0..60 {
+        let middle = 0.5 * (low + high);
+        if integral(middle) < inside * whole {
+            low = middle;
+        } else {
+            high = middle;
+        }
+    }
+    freedom.sqrt() * low.tan()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::student;
+
+    /// Quantiles 0.99865 of Student's t, from the closed forms for 1 and 2 degrees of freedom and the normal limit.
+    #[test]
+    fn student_has_its_closed_forms() {
+        let p: f64 = 0.997_300_203_936_74;
+        let one = (std::f64::consts::FRAC_PI_2 * p).tan();
+        assert!((student(1.0) / one - 1.0).abs() < 1e-6, "{} {one}", student(1.0));
+        let two = p * (2.0 / (1.0 - p * p)).sqrt();
+        assert!((student(2.0) / two - 1.0).abs() < 1e-6, "{} {two}", student(2.0));
+        assert!((student(1e5) - 3.0).abs() < 1e-3);
+    }
+}

@@ -1,0 +1,583 @@
+//! From logs and a description to an identified arm.
+
+use std::ops::Range;
+
+use armgen_codegen::document::excerpt;
+use armgen_codegen::suggest::did_you_mean;
+use nalgebra::{DMatrix, DVector};
+
+use crate::arm::Arm;
+use crate::estimate::{Column, Estimate, Run};
+use crate::finding::{Code, Finding, Findings};
+use crate::fit::{Gram, Solution, FEW_BLOCKS};
+use crate::judge::{judge, Judgement, Model};
+use crate::log::Log;
+use crate::options::{Gains, Load, Options};
+use crate::prepare::{prepare, Friction, Piece};
+use crate::signal::{period, LowPass};
+use crate::suspect;
+
+/// A log with what the options say of it.
+#[derive(Clone, Debug, Default)]
+pub struct Input {
+    /// The log.
+    pub log: Log,
+    /// Logs of one session share friction.
+    pub session: String,
+    /// Its load.
+    pub load: Load,
+}
+
+/// A value with its interval.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Interval {
+    /// The estimate.
+    pub value: f64,
+    /// Its standard error.
+    pub sigma: f64,
+    /// The lower end of three sigma, of Student's t where there are few blocks.
+    pub low: f64,
+    /// The upper end.
+    pub high: f64,
+    /// Whether the logs show it.
+    pub excited: bool,
+}
+
+/// A term of friction of a joint.
+#[derive(Clone, Copy, Debug)]
+pub struct FrictionValue {
+    /// The session, by its place.
+    pub session: usize,
+    /// The joint.
+    pub joint: usize,
+    /// The term.
+    pub term: Friction,
+    /// Its value.
+    pub value: Interval,
+}
+
+/// An identified arm.
+#[derive(Clone, Debug, Default)]
+pub struct Identified {
+    /// Base parameters.
+    pub base: Vec<Interval>,
+    /// Friction of all sessions.
+    pub friction: Vec<FrictionValue>,
+    /// Velocities of Stribeck friction.
+    pub velocities: Vec<f64>,
+    /// Names of the sessions.
+    pub sessions: Vec<String>,
+    /// Drive gains, by joint, where logs hold currents. Not excited: kept.
+    pub gains: Vec<Interval>,
+    /// The ten of the load of each log that has one.
+    pub loads: Vec<(usize, Vec<Option<Interval>>)>,
+    /// s, by joint.
+    pub delays: Vec<f64>,
+    /// Hz.
+    pub cutoff: f64,
+    /// Hz, of the first log.
+    pub rate: f64,
+    /// Samples that rows were made of.
+    pub used: usize,
+    /// The condition of the scaled equations.
+    pub condition: f64,
+    /// Mean logarithm of the eigenvalues.
+    pub log_det_per_parameter: f64,
+    /// Directions that the logs do not show: names, and the direction in words.
+    pub unexcited: Vec<(Vec<String>, String)>,
+    /// Robust spread of residuals, by joint.
+    pub spreads: Vec<f64>,
+    /// Covariance of the base parameters.
+    pub covariance: DMatrix<f64>,
+    /// Blocks of time that it rests on.
+    pub blocks: usize,
+    /// Reduced data over base parameters and the friction of the last session.
+    pub reduced: Option<Reduced>,
+    /// Each log against the model.
+    pub judgements: Vec<Judgement>,
+}
+
+/// The least squares of all logs, reduced to base parameters and the friction that is written.
+#[derive(Clone, Debug)]
+pub struct Reduced {
+    /// A'WA, A'Wb, b'Wb over base parameters, then `friction`.
+    pub gram: Gram,
+    /// Joint and term of the columns behind the base parameters.
+    pub friction: Vec<(usize, Friction)>,
+}
+
+/// Identifies an arm. Nothing is returned where the findings hold errors.
+pub fn identify(arm: &Arm, inputs: &[Input], options: &Options, findings: &mut Findings) -> Option<Identified> {
+    let n = arm.dof();
+    let mut flawed: Vec<Vec<Vec<Range<f64>>>> = Vec::new();
+    for input in inputs {
+        flawed.push(suspect::signals(arm, &input.log, findings));
+    }
+    fitting(arm, &inputs[0].log.name, options, findings);
+    let has_currents = inputs.iter().any(|input| input.log.is_current);
+    let gains = start_gains(arm, inputs, options, has_currents, findings);
+    if findings.has_errors() {
+        return None;
+    }
+    let mut logs: Vec<Log> = inputs.iter().map(|input| input.log.clone()).collect();
+    for log in logs.iter_mut().filter(|log| log.is_current) {
+        for (column, gain) in log.effort.iter_mut().zip(&gains) {
+            column.iter_mut().for_each(|x| *x *= gain);
+        }
+    }
+    let mut sessions: Vec<String> = Vec::new();
+    let runs: Vec<Run> = inputs
+        .iter()
+        .map(|input| {
+            let session = sessions.iter().position(|known| *known == input.session).unwrap_or_else(|| {
+                sessions.push(input.session.clone());
+                sessions.len() - 1
+            });
+            Run { session, load: input.load.clone(), is_current: input.log.is_current }
+        })
+        .collect();
+    let rate = 1.0 / period(&logs[0].t);
+    let slowest = logs.iter().map(|log| 1.0 / period(&log.t)).fold(f64::INFINITY, f64::min);
+    let highest = (0.1 * slowest).max(3.0f64.min(0.2 * slowest));
+    let all = |cutoff: f64| -> Vec<Piece> {
+        logs.iter().enumerate().flat_map(|(place, log)| prepare(arm, place, log, cutoff, &flawed[place])).collect()
+    };
+    let mut cutoff = options.cutoff.unwrap_or(highest);
+    let mut pieces = all(cutoff);
+    if pieces.is_empty() {
+        let text = format!("no stretch of the logs is longer than {:.1} s", 8.0 / cutoff);
+        let help = "log at least 10 s without a gap";
+        findings.push(Finding::new(Code::NoMotion, &logs[0].name, text, help));
+        return None;
+    }
+    let simple = |_: usize, term: Friction| matches!(term, Friction::Viscous | Friction::Coulomb | Friction::Offset);
+    if options.cutoff.is_none() {
+        let mut first = Estimate::new(arm, &pieces, &runs, sessions.len());
+        first.activate(&simple);
+        let (equations, _) = first.equations();
+        first.fit(&equations);
+        let chosen = cutoff_of(&first, highest);
+        if chosen < cutoff {
+            cutoff = chosen;
+            pieces = all(cutoff);
+        }
+    }
+    let mut estimate = Estimate::new(arm, &pieces, &runs, sessions.len());
+    fix(arm, options, &mut estimate);
+    estimate.activate(&simple);
+    let unknowns = estimate.active.len();
+    let moving: usize = pieces.iter().map(|piece| piece.counts.iter().filter(|counts| **counts).count()).sum();
+    if moving < 5 * unknowns {
+        let text = format!("{moving} rows of joints in motion, and {unknowns} unknowns");
+        let help = "move all joints, longer or faster: `armgen excite` plans such a motion";
+        findings.push(Finding::new(Code::NoMotion, &logs[0].name, text, help));
+        return None;
+    }
+    let (equations, _) = estimate.equations();
+    estimate.fit(&equations);
+    if suspect::torques(&estimate, &logs[0].name, findings) {
+        return None;
+    }
+    let turned = turned_throughout(&estimate);
+    if turned {
+        let text = "viscous friction and inertias are negative throughout: the sign of all torques is turned";
+        let help = "turn the sign of the torque columns: a positive torque drives its joint in the positive direction";
+        findings.push(Finding::new(Code::SignSuspected, &logs[0].name, text, help));
+        return None;
+    }
+    if let Some(given) = &options.delay {
+        estimate.delays = (0..n).map(|j| given.get(j).or(given.first()).copied().unwrap_or(0.0)).collect();
+    } else {
+        estimate.delays();
+    }
+    let apart: Vec<(bool, bool)> = (0..n).map(|j| estimate.tells_apart(j)).collect();
+    let mut chosen: Vec<Vec<Friction>> = apart
+        .iter()
+        .map(|(offset, load)| {
+            let wanted = options.friction.clone().unwrap_or_else(|| vec![Friction::Viscous, Friction::Coulomb, Friction::Offset]);
+            let possible = |term: &Friction| match term {
+                Friction::Offset => *offset,
+                Friction::Load => *load,
+                _ => true,
+            };
+            wanted.into_iter().filter(possible).collect()
+        })
+        .collect();
+    let activate = |estimate: &mut Estimate<'_>, chosen: &[Vec<Friction>]| {
+        estimate.activate(&|joint, term| chosen[joint].contains(&term));
+        let (equations, _) = estimate.equations();
+        estimate.fit(&equations);
+    };
+    activate(&mut estimate, &chosen);
+    for round in 0..3 {
+        estimate.renew_sizes();
+        if round == 0 && options.friction.is_none() {
+            let mut with = chosen.clone();
+            estimate.choose(&mut with, Friction::Load);
+            for j in (0..n).filter(|&j| apart[j].1) {
+                chosen[j] = with[j].clone();
+            }
+        }
+        activate(&mut estimate, &chosen);
+    }
+    if options.friction.is_none() {
+        estimate.choose(&mut chosen, Friction::Cubic);
+        activate(&mut estimate, &chosen);
+        (0..n).for_each(|j| estimate.stribeck_velocity(j));
+        estimate.choose(&mut chosen, Friction::Stribeck);
+        activate(&mut estimate, &chosen);
+    }
+    if options.delay.is_none() {
+        estimate.delays();
+        activate(&mut estimate, &chosen);
+    }
+    let identify_gains = has_currents && options.gains == Gains::Identify;
+    let mut gain_intervals: Vec<Interval> = Vec::new();
+    let mut of_gains = None;
+    if identify_gains {
+        let mut held = vec![false; n];
+        loop {
+            activate(&mut estimate, &chosen);
+            let mut trial = estimate.clone();
+            let (corrections, sigmas, matrix, reach) = trial.gains(&held);
+            // Load friction takes |g| of the corrected torques.
+            trial.renew_sizes();
+            let (corrections, sigmas, matrix, reach) = if chosen.iter().any(|terms| terms.contains(&Friction::Load)) {
+                trial.gains(&held)
+            } else {
+                (corrections, sigmas, matrix, reach)
+            };
+            let worst = (0..n)
+                .filter(|&j| !held[j] && (reach * sigmas[j] > 0.5 * corrections[j] || !corrections[j].is_finite()))
+                .max_by(|&a, &b| (sigmas[a] / corrections[a]).total_cmp(&(sigmas[b] / corrections[b])));
+            if let Some(j) = worst {
+                held[j] = true;
+                continue;
+            }
+            gain_intervals = (0..n)
+                .map(|j| {
+                    let (value, sigma) = (gains[j] * corrections[j], gains[j] * sigmas[j]);
+                    Interval { value, sigma, low: value - reach * sigma, high: value + reach * sigma, excited: !held[j] }
+                })
+                .collect();
+            of_gains = Some((trial.active.clone(), matrix, reach, trial.x.clone()));
+            estimate = trial;
+            break;
+        }
+    } else if has_currents {
+        gain_intervals =
+            gains.iter().map(|gain| Interval { value: *gain, sigma: 0.0, low: *gain, high: *gain, excited: false }).collect();
+    }
+    let x_of_gains = of_gains.as_ref().map(|(.., x)| x.clone());
+    let (equations, solution, covariance) = estimate.finish();
+    let (matrix, reach) = match of_gains {
+        Some((_, matrix, reach, _)) => (matrix, reach),
+        None => (covariance.matrix.clone(), covariance.reach),
+    };
+    if let Some(x) = x_of_gains {
+        // The estimate whose intervals these are.
+        estimate.x = x;
+    }
+    if (covariance.blocks as f64) < FEW_BLOCKS {
+        let text = format!("{} independent stretches of time: intervals use Student's t", covariance.blocks);
+        findings.push(Finding::new(Code::ShortLog, &logs[0].name, text, "log 30 s or more for narrow intervals"));
+    }
+    let interval = |k: usize| {
+        let (value, sigma) = (estimate.x[estimate.active[k]], matrix[(k, k)].max(0.0).sqrt());
+        Interval { value, sigma, low: value - reach * sigma, high: value + reach * sigma, excited: true }
+    };
+    let (unexcited, hidden) = directions(&estimate, &solution, &matrix);
+    let mut found = Identified {
+        velocities: estimate.velocities.clone(),
+        sessions,
+        gains: gain_intervals,
+        delays: estimate.delays.clone(),
+        cutoff,
+        rate,
+        used: pieces.iter().map(|piece| piece.kept.len()).sum(),
+        condition: solution.condition,
+        log_det_per_parameter: solution.log_det_per_column,
+        unexcited,
+        spreads: estimate.spreads.clone(),
+        blocks: covariance.blocks,
+        ..Identified::default()
+    };
+    let of_base: Vec<usize> =
+        (0..estimate.active.len()).filter(|&k| matches!(estimate.columns[estimate.active[k]], Column::Base(_))).collect();
+    found.base = of_base.iter().map(|&k| Interval { excited: !hidden[k], ..interval(k) }).collect();
+    found.covariance = DMatrix::from_fn(of_base.len(), of_base.len(), |a, b| matrix[(of_base[a], of_base[b])]);
+    for (k, &place) in estimate.active.iter().enumerate() {
+        if let Column::Friction(session, joint, term) = estimate.columns[place] {
+            found.friction.push(FrictionValue { session, joint, term, value: Interval { excited: !hidden[k], ..interval(k) } });
+        }
+    }
+    for (log, _) in runs.iter().enumerate().filter(|(_, run)| run.load.is_there) {
+        let known = estimate.known_load(log);
+        let ten = (0..10)
+            .map(|k| {
+                let place = estimate.place(Column::Load(log, k));
+                match estimate.active.iter().position(|active| *active == place) {
+                    Some(k) => Some(interval(k)),
+                    None if known[k] != 0.0 => {
+                        Some(Interval { value: known[k], low: known[k], high: known[k], ..Interval::default() })
+                    }
+                    None => None,
+                }
+            })
+            .collect();
+        found.loads.push((log, ten));
+    }
+    found.reduced = Some(reduce(&estimate, &equations, found.sessions.len() - 1));
+    // The correction of gains applies to the torques that the model is judged by.
+    for log in logs.iter_mut().filter(|log| log.is_current) {
+        for (column, correction) in log.effort.iter_mut().zip(&estimate.corrections) {
+            column.iter_mut().for_each(|x| *x *= correction);
+        }
+    }
+    for (place, log) in logs.iter().enumerate() {
+        let model = model_of(arm, &estimate, place, &found);
+        found.judgements.push(judge(arm, log, &model));
+    }
+    poor_fits(arm, inputs, &found, findings);
+    Some(found)
+}
+
+/// The model that an estimate is, for one of its logs.
+fn model_of(arm: &Arm, estimate: &Estimate<'_>, log: usize, found: &Identified) -> Model {
+    let mut pi = DVector::from_vec(estimate.pi());
+    if estimate.runs[log].load.is_there {
+        let mut ten = DVector::from_row_slice(&estimate.known_load(log));
+        for k in 0..10 {
+            ten[k] += estimate.x[estimate.place(Column::Load(log, k))];
+        }
+        pi += &arm.load * ten;
+    }
+    let session = estimate.runs[log].session;
+    let friction = (0..arm.dof())
+        .map(|j| Friction::ALL.map(|term| estimate.x[estimate.place(Column::Friction(session, j, term))]))
+        .collect();
+    Model {
+        pi: pi.as_slice().to_vec(),
+        friction,
+        velocities: found.velocities.clone(),
+        delays: Some(found.delays.clone()),
+        spreads: None,
+        covariance: None,
+    }
+}
+
+/// Gains that currents become torques by.
+fn start_gains(arm: &Arm, inputs: &[Input], options: &Options, has_currents: bool, findings: &mut Findings) -> Vec<f64> {
+    let n = arm.dof();
+    let name = inputs.iter().find(|input| input.log.is_current).map_or("", |input| input.log.name.as_str());
+    if !has_currents {
+        return vec![1.0; n];
+    }
+    match &options.gains {
+        Gains::Given(gains) if gains.len() == n => return gains.clone(),
+        Gains::Given(gains) => {
+            let text = format!("`gains` has {} numbers, and the arm {n} joints", gains.len());
+            findings.push(Finding::new(Code::NoGain, name, text, "give one gain for each joint, N m/A or N/A"));
+        }
+        Gains::File => {
+            for joint in arm.joints.iter().filter(|joint| joint.gain.is_none()) {
+                let text = format!("the log holds currents, and the motor of joint `{}` has no gain", joint.name);
+                let help = "give `gain: ...` (N m/A) under `motor`, or log a known load besides and write `gains: identify`";
+                findings.push(Finding::new(Code::NoGain, name, text, help).in_column(format!("current_{}", joint.name)));
+            }
+        }
+        Gains::Identify => {
+            if !inputs.iter().any(|input| input.load.mass.is_some()) {
+                let text = "currents alone determine ratios of gains and masses, and no gain";
+                let help =
+                    "log a motion with a known mass at the end effector, and give it: `load: {mass: 2.5}`, or `--load 2.5`";
+                findings.push(Finding::new(Code::GainScale, name, text, help));
+            }
+        }
+    }
+    arm.joints.iter().map(|joint| joint.gain.unwrap_or(10.0)).collect()
+}
+
+/// Options that name what the arm does not have.
+fn fitting(arm: &Arm, log: &str, options: &Options, findings: &mut Findings) {
+    let n = arm.dof();
+    let names: Vec<String> =
+        arm.joints.iter().flat_map(|joint| Friction::ALL.map(|term| format!("{}.friction.{}", joint.name, term.key()))).collect();
+    let known: Vec<&str> = names.iter().map(String::as_str).collect();
+    for name in options.keep.iter().chain(options.fixed.iter().map(|(name, _)| name)).filter(|name| !names.contains(name)) {
+        let meant = did_you_mean(name, &known).map_or_else(String::new, |meant| format!("did you mean `{meant}`? "));
+        let text = format!("`{}` is no entry that can be kept or fixed", excerpt(name));
+        let help = format!("{meant}entries are terms of friction: JOINT.friction.KEY");
+        findings.push(Finding::new(Code::BadOptions, log, text, help));
+    }
+    if let Some(given) = options.delay.as_ref().filter(|given| given.len() != 1 && given.len() != n) {
+        let text = format!("`delay` has {} numbers, and the arm {n} joints", given.len());
+        findings.push(Finding::new(Code::BadOptions, log, text, "give one delay for all joints, or one for each, ms"));
+    }
+}
+
+/// Columns with given values.
+fn fix(arm: &Arm, options: &Options, estimate: &mut Estimate<'_>) {
+    for (j, joint) in arm.joints.iter().enumerate() {
+        for (place, term) in Friction::ALL.into_iter().enumerate() {
+            let name = format!("{}.friction.{}", joint.name, term.key());
+            let given = options.fixed.iter().find(|(fixed, _)| *fixed == name).map(|(_, value)| *value);
+            let kept = options.keep.contains(&name).then(|| joint.friction[place].unwrap_or(0.0));
+            if let Some(value) = given.or(kept) {
+                for session in 0..estimate.sessions {
+                    let place = estimate.place(Column::Friction(session, j, term));
+                    estimate.fixed.push((place, value));
+                }
+            }
+        }
+    }
+}
+
+/// The lowest cutoff that keeps 99.9 % of the energy of the model's torque about its mean, from 3 Hz on.
+fn cutoff_of(estimate: &Estimate<'_>, highest: f64) -> f64 {
+    let arm = estimate.arm;
+    let n = arm.dof();
+    let pi = estimate.pi();
+    let mut signals: Vec<(f64, Vec<f64>)> = Vec::new();
+    for piece in estimate.pieces {
+        let torque = arm.torque(&piece.q, &piece.dq, &piece.ddq, &pi);
+        let session = estimate.runs[piece.log].session;
+        for j in 0..n {
+            let friction: Vec<(Friction, f64)> = Friction::ALL
+                .iter()
+                .map(|&term| (term, estimate.x[estimate.place(Column::Friction(session, j, term))]))
+                .collect();
+            let signal: Vec<f64> = torque
+                .iter()
+                .enumerate()
+                .skip(j)
+                .step_by(n)
+                .map(|(k, tau)| {
+                    let of = |&(term, value): &(Friction, f64)| value * term.column(piece.dq[k], piece.eps[j], 0.0, 1.0);
+                    tau + friction.iter().map(of).sum::<f64>()
+                })
+                .collect();
+            let mean = signal.iter().sum::<f64>() / signal.len() as f64;
+            signals.push((1.0 / piece.period, signal.into_iter().map(|x| x - mean).collect()));
+        }
+    }
+    let mut cutoff = 3.0f64.min(highest);
+    while cutoff < highest {
+        let lost: f64 = signals
+            .iter()
+            .map(|(rate, signal)| {
+                let passed = LowPass::new(cutoff, *rate).both_ways(signal);
+                let energy: f64 = signal.iter().map(|x| x * x).sum();
+                signal.iter().zip(&passed).map(|(a, b)| (a - b).powi(2)).sum::<f64>() / energy.max(1e-300)
+            })
+            .sum::<f64>()
+            / signals.len() as f64;
+        if lost < 1e-3 {
+            break;
+        }
+        cutoff += 0.5;
+    }
+    cutoff.min(highest)
+}
+
+/// Whether energy comes out of most joints: viscous friction is negative, clearly, throughout.
+fn turned_throughout(estimate: &Estimate<'_>) -> bool {
+    let n = estimate.arm.dof();
+    let negative = (0..n).filter(|&j| {
+        let of = |term| estimate.x[estimate.place(Column::Friction(0, j, term))];
+        // The sum at 1 rad/s: a small one of either may be negative by noise.
+        of(Friction::Viscous) + of(Friction::Coulomb) < 0.0
+    });
+    negative.count() == n
+}
+
+/// Directions that the logs do not show, in words, and for each active column whether it is part of one.
+fn directions(estimate: &Estimate<'_>, solution: &Solution, matrix: &DMatrix<f64>) -> (Vec<(Vec<String>, String)>, Vec<bool>) {
+    let arm = estimate.arm;
+    let name = |k: usize| match estimate.columns[estimate.active[k]] {
+        Column::Base(base) => arm.base[base].name.clone(),
+        Column::Load(log, k) => format!("{} of the load of log {}", crate::body::NAMES[k], log + 1),
+        Column::Friction(_, j, term) => format!("{}.friction.{}", arm.joints[j].name, term.key()),
+        Column::Gain(j) => format!("{}.motor.gain", arm.joints[j].name),
+    };
+    let mut hidden = vec![false; estimate.active.len()];
+    let mut found = Vec::new();
+    for direction in &solution.hidden {
+        let largest = direction.amax();
+        let parts: Vec<usize> = (0..direction.len()).filter(|&k| direction[k].abs() > 0.1 * largest).collect();
+        parts.iter().for_each(|&k| hidden[k] = true);
+        let names: Vec<String> = parts.iter().map(|&k| name(k)).collect();
+        let words = parts.iter().map(|&k| format!("{:+.2} {}", direction[k] / largest, name(k))).collect::<Vec<_>>().join(" ");
+        found.push((names, format!("{words} (each over the size of its column)")));
+    }
+    // A base parameter that is known worse than ten times the size of such bodies is not shown either.
+    let size = |column: usize| {
+        let (link, k) = (column / 10, column % 10);
+        if link >= arm.links.len() {
+            return f64::INFINITY;
+        }
+        let mass = arm.links[link].own[0].max(0.1);
+        let length = arm.links[link].towards.norm().max(0.1);
+        mass * [1.0, length, length * length][usize::from(k > 0) + usize::from(k > 3)]
+    };
+    for k in 0..estimate.active.len() {
+        let Column::Base(base) = estimate.columns[estimate.active[k]] else { continue };
+        let row = arm.combination.row(base);
+        let reference: f64 = row.iter().enumerate().filter(|(_, t)| **t != 0.0).map(|(column, t)| t.abs() * size(column)).sum();
+        let sigma = matrix[(k, k)].max(0.0).sqrt();
+        if !hidden[k] && sigma > 10.0 * reference {
+            hidden[k] = true;
+            found.push((
+                vec![name(k)],
+                format!("{}: its sigma {sigma:.3e} is more than ten times the size of such bodies", name(k)),
+            ));
+        }
+    }
+    (found, hidden)
+}
+
+/// The reduced data over base parameters and the friction of a session: all other columns are eliminated.
+fn reduce(estimate: &Estimate<'_>, equations: &crate::fit::Equations, session: usize) -> Reduced {
+    let is_kept = |place: usize| match estimate.columns[place] {
+        Column::Base(_) => true,
+        Column::Friction(of, ..) => of == session,
+        _ => false,
+    };
+    let kept: Vec<usize> = estimate.active.iter().copied().filter(|&place| is_kept(place)).collect();
+    let others: Vec<usize> = estimate.active.iter().copied().filter(|&place| !is_kept(place)).collect();
+    let whole = equations.gram(&estimate.weights);
+    let mut gram = whole.of(&kept);
+    if !others.is_empty() {
+        let other = whole.of(&others);
+        let zero = DVector::zeros(others.len());
+        let inverse = crate::fit::solve(&other, &zero).inverse;
+        let mixed = DMatrix::from_fn(kept.len(), others.len(), |i, j| whole.h[(kept[i], others[j])]);
+        let half = &mixed * &inverse;
+        gram.h -= &half * mixed.transpose();
+        gram.g -= &half * &other.g;
+        gram.bb -= other.g.dot(&(&inverse * &other.g));
+        gram.h = 0.5 * (&gram.h + gram.h.transpose());
+    }
+    let friction = kept
+        .iter()
+        .filter_map(|&place| match estimate.columns[place] {
+            Column::Friction(_, joint, term) => Some((joint, term)),
+            _ => None,
+        })
+        .collect();
+    Reduced { gram, friction }
+}
+
+/// Joints that the model explains badly.
+fn poor_fits(arm: &Arm, inputs: &[Input], found: &Identified, findings: &mut Findings) {
+    for (input, judgement) in inputs.iter().zip(&found.judgements) {
+        for (j, relative) in judgement.moving.iter().enumerate().filter(|(_, relative)| **relative > 0.3) {
+            let name = &arm.joints[j].name;
+            let text = format!("the model leaves {:.0} % of the torque of joint `{name}`", 100.0 * relative);
+            let help =
+                "look at the direction of gravity, at `base`, at a load that the options do not name, and at the unit of torque";
+            let column = format!("{}_{name}", if input.log.is_current { "current" } else { "tau" });
+            findings.push(Finding::new(Code::PoorFit, &input.log.name, text, help).in_column(column));
+        }
+    }
+}

@@ -1,0 +1,21 @@
+//! From logs of an arm to the numbers of its description, with intervals and proofs.
+//!
+//! ```text
+//! tau = Y_b(q, dq, ddq) pi_b + F(q, dq)
+//! ```
+//!
+//! Text and streams go in, values and text come out; nothing here touches a file or a terminal.
+
+pub mod arm;
+pub mod body;
+pub mod estimate;
+pub mod finding;
+pub mod fit;
+pub mod identify;
+pub mod judge;
+pub mod log;
+pub mod options;
+pub mod prepare;
+pub mod report;
+pub mod signal;
+pub mod suspect;

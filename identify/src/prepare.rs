@@ -1,0 +1,245 @@
+//! From a log to filtered rows: the model's columns and the torques go through one low pass.
+//!
+//! Positions and rates are smoothed wide, accelerations are central differences of rates. Columns are computed from these at the full rate, then
+//! they and the torques pass the same zero-phase low pass, and every few samples are kept. A filter that both sides pass changes no parameter.
+
+use std::ops::Range;
+
+use crate::arm::Arm;
+use crate::log::Log;
+use crate::signal::{derivative, interpolate, period, pieces, spread, LowPass};
+
+/// Terms of friction, in the order of the columns.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub enum Friction {
+    /// Fv dq.
+    Viscous,
+    /// Fc sign(dq).
+    Coulomb,
+    /// F0.
+    Offset,
+    /// Fl |g| sign(dq).
+    Load,
+    /// F3 dq³.
+    Cubic,
+    /// Fs sign(dq) exp(-|dq|/vs).
+    Stribeck,
+}
+
+impl Friction {
+    /// All terms.
+    pub const ALL: [Friction; 6] =
+        [Friction::Viscous, Friction::Coulomb, Friction::Offset, Friction::Load, Friction::Cubic, Friction::Stribeck];
+
+    /// Its key in a description.
+    pub fn key(self) -> &'static str {
+        match self {
+            Friction::Viscous => "viscous",
+            Friction::Coulomb => "coulomb",
+            Friction::Offset => "offset",
+            Friction::Load => "load",
+            Friction::Cubic => "cubic",
+            Friction::Stribeck => "stribeck",
+        }
+    }
+
+    /// Whether its coefficient is at least 0.
+    pub fn is_not_negative(self) -> bool {
+        matches!(self, Friction::Viscous | Friction::Coulomb | Friction::Load)
+    }
+
+    /// The column at a rate; `eps` smooths the sign, `size` is |g| of the joint, `velocity` that of Stribeck friction.
+    pub fn column(self, dq: f64, eps: f64, size: f64, velocity: f64) -> f64 {
+        let sign = || (dq / eps).tanh();
+        match self {
+            Friction::Viscous => dq,
+            Friction::Coulomb => sign(),
+            Friction::Offset => 1.0,
+            Friction::Load => sign() * size,
+            Friction::Cubic => dq * dq * dq,
+            Friction::Stribeck => sign() * (-dq.abs() / velocity).exp(),
+        }
+    }
+}
+
+/// A stretch of a log on an even grid.
+#[derive(Clone, Debug)]
+pub struct Piece {
+    /// The log, by its place.
+    pub log: usize,
+    /// s between samples.
+    pub period: f64,
+    /// The first stamp, s.
+    pub start: f64,
+    /// Positions and rates, smoothed wide, state by state.
+    pub q: Vec<f64>,
+    /// Rates.
+    pub dq: Vec<f64>,
+    /// Accelerations.
+    pub ddq: Vec<f64>,
+    /// Filtered torques at the full rate, by joint.
+    pub tau: Vec<Vec<f64>>,
+    /// Samples that are kept.
+    pub kept: Vec<usize>,
+    /// Filtered Y_b of the kept samples, state by state, row by row.
+    pub y: Vec<f64>,
+    /// Filtered known torques of the kept samples, state by state.
+    pub known: Vec<f64>,
+    /// Whether a row counts, by kept sample and joint.
+    pub counts: Vec<bool>,
+    /// Smoothing of the sign, by joint.
+    pub eps: Vec<f64>,
+    /// The low pass.
+    pub filter: LowPass,
+}
+
+/// Samples of a stretch that are filtered at once.
+const LONGEST: usize = 16_384;
+
+/// Least smoothing of a sign, rad/s or m/s.
+const LEAST_EPS: f64 = 0.003;
+
+/// How long a rate keeps its sign where friction at low rates counts, s.
+const STEADY: f64 = 0.1;
+
+/// The stretches of a log on grids of its median period. `flawed` are stretches of time with torques that do not count, by joint.
+pub fn prepare(arm: &Arm, place: usize, log: &Log, cutoff: f64, flawed: &[Vec<Range<f64>>]) -> Vec<Piece> {
+    let period = period(&log.t);
+    let rate = 1.0 / period;
+    let margin = (4.0 / cutoff * rate).ceil() as usize;
+    let mut all = Vec::new();
+    for range in pieces(&log.t, period) {
+        let (t, span) = (&log.t[range.clone()], log.t[range.end - 1] - log.t[range.start]);
+        let samples = (span / period + 1.0 + 1e-6).floor() as usize;
+        let mut first = 0;
+        while first + 2 * margin + 4 < samples {
+            let last = (first + LONGEST + 2 * margin).min(samples);
+            let grid: &[f64] = &(first..last).map(|k| t[0] + k as f64 * period).collect::<Vec<_>>();
+            // Stamps that are even but for rounding are the grid, so that nothing is interpolated.
+            let even =
+                t.len() == samples && t.iter().enumerate().all(|(k, t0)| (t0 - t[0] - k as f64 * period).abs() < 1e-3 * period);
+            let on_grid = |x: &[f64]| {
+                let x = &x[range.clone()];
+                if even {
+                    x[first..last].to_vec()
+                } else {
+                    interpolate(t, x, grid)
+                }
+            };
+            all.push(piece(arm, place, log, cutoff, flawed, &on_grid, grid, margin));
+            if last == samples {
+                break;
+            }
+            first = last - 2 * margin;
+        }
+    }
+    all
+}
+
+#[allow(clippy::too_many_arguments)]
+fn piece(
+    arm: &Arm,
+    place: usize,
+    log: &Log,
+    cutoff: f64,
+    flawed: &[Vec<Range<f64>>],
+    on_grid: &dyn Fn(&[f64]) -> Vec<f64>,
+    grid: &[f64],
+    margin: usize,
+) -> Piece {
+    let (n, samples) = (arm.dof(), grid.len());
+    let period = (grid[samples - 1] - grid[0]) / (samples - 1) as f64;
+    let rate = 1.0 / period;
+    let wide_cutoff = (5.0 * cutoff).min(0.4 * rate);
+    let wide = LowPass::new(wide_cutoff, rate);
+    let filter = LowPass::new(cutoff, rate);
+    let (mut q, mut dq, mut ddq) = (vec![0.0; n * samples], vec![0.0; n * samples], vec![0.0; n * samples]);
+    let mut eps = Vec::new();
+    let mut steady = vec![false; n * samples];
+    for i in 0..n {
+        let position = on_grid(&log.q[i]);
+        let rough = match &log.dq {
+            Some(rates) => on_grid(&rates[i]),
+            None => derivative(&position, period),
+        };
+        // Second differences of white noise have six times its variance.
+        let second: Vec<f64> = rough.windows(3).map(|x| x[0] - 2.0 * x[1] + x[2]).collect();
+        let noise = spread(&second) / 6f64.sqrt() * (2.0 * wide_cutoff / rate).sqrt().min(1.0);
+        eps.push((3.0 * noise).max(LEAST_EPS));
+        let (smooth, rates) = (wide.both_ways(&position), wide.both_ways(&rough));
+        let accelerations = derivative(&rates, period);
+        let mut start = 0;
+        for k in 0..samples {
+            (q[k * n + i], dq[k * n + i], ddq[k * n + i]) = (smooth[k], rates[k], accelerations[k]);
+            let ends = k + 1 == samples || rates[k + 1].signum() != rates[k].signum() || rates[k] == 0.0;
+            if ends {
+                let long = (k + 1 - start) as f64 * period >= STEADY && rates[k] != 0.0;
+                (start..=k).for_each(|k| steady[k * n + i] = long);
+                start = k + 1;
+            }
+        }
+    }
+    let tau: Vec<Vec<f64>> = log.effort.iter().map(|tau| filter.both_ways(&on_grid(tau))).collect();
+    let step = ((rate / (5.0 * cutoff)).round() as usize).max(1);
+    let kept: Vec<usize> = (margin..samples.saturating_sub(margin)).step_by(step).collect();
+    let counts = kept
+        .iter()
+        .flat_map(|&k| (0..n).map(move |i| (k, i)))
+        .map(|(k, i)| {
+            let moves = dq[k * n + i].abs() > 3.0 * eps[i] || (steady[k * n + i] && dq[k * n + i].abs() > 1e-9);
+            moves && !flawed.get(i).is_some_and(|flawed| flawed.iter().any(|stretch| stretch.contains(&grid[k])))
+        })
+        .collect();
+    let full = arm.regressor(&q, &dq, &ddq);
+    let columns = full.len() / samples;
+    let keep = |full: &[f64], columns: usize| {
+        let mut kept_rows = vec![0.0; kept.len() * columns];
+        let mut one = vec![0.0; samples];
+        for column in 0..columns {
+            (0..samples).for_each(|k| one[k] = full[k * columns + column]);
+            if one.iter().all(|x| *x == 0.0) {
+                continue;
+            }
+            let filtered = filter.both_ways(&one);
+            for (row, &k) in kept.iter().enumerate() {
+                kept_rows[row * columns + column] = filtered[k];
+            }
+        }
+        kept_rows
+    };
+    let y = keep(&full, columns);
+    let known = keep(&arm.known(&q, &dq, &ddq), n);
+    Piece { log: place, period, start: grid[0], q, dq, ddq, tau, kept, y, known, counts, eps, filter }
+}
+
+impl Piece {
+    /// The stamp of a kept sample, s.
+    pub fn time(&self, row: usize) -> f64 {
+        self.start + self.kept[row] as f64 * self.period
+    }
+
+    /// Filtered torque of a joint at the kept samples, of a time later by a delay.
+    pub fn delayed(&self, joint: usize, delay: f64) -> Vec<f64> {
+        let shift = delay / self.period;
+        if shift == 0.0 {
+            return self.kept.iter().map(|&k| self.tau[joint][k]).collect();
+        }
+        self.kept.iter().map(|&k| crate::signal::between(&self.tau[joint], k as f64 + shift)).collect()
+    }
+
+    /// A filtered column of a joint at the kept samples. `sizes` has |g| state by state, and is used by load friction.
+    pub fn friction(&self, joint: usize, term: Friction, velocity: f64, sizes: &[f64]) -> Vec<f64> {
+        let n = self.tau.len();
+        if term == Friction::Offset {
+            return vec![1.0; self.kept.len()];
+        }
+        let full: Vec<f64> = (0..self.tau[joint].len())
+            .map(|k| {
+                let size = sizes.get(k * n + joint).map_or(0.0, |g| g.abs());
+                term.column(self.dq[k * n + joint], self.eps[joint], size, velocity)
+            })
+            .collect();
+        let filtered = self.filter.both_ways(&full);
+        self.kept.iter().map(|&k| filtered[k]).collect()
+    }
+}

@@ -1,0 +1,193 @@
+//! Signals: pieces without gaps, a common grid, zero-phase filters, derivatives.
+
+use std::f64::consts::PI;
+
+/// The median; 0 of nothing.
+pub fn median(values: &[f64]) -> f64 {
+    let mut sorted: Vec<f64> = values.to_vec();
+    sorted.sort_by(f64::total_cmp);
+    match sorted.len() {
+        0 => 0.0,
+        n if n % 2 == 1 => sorted[n / 2],
+        n => 0.5 * (sorted[n / 2 - 1] + sorted[n / 2]),
+    }
+}
+
+/// A robust standard deviation: 1.4826 times the median of absolute deviations from 0.
+pub fn spread(values: &[f64]) -> f64 {
+    1.4826 * median(&values.iter().map(|x| x.abs()).collect::<Vec<_>>())
+}
+
+/// The root of the mean square; 0 of nothing.
+pub fn rms(values: &[f64]) -> f64 {
+    (values.iter().map(|x| x * x).sum::<f64>() / values.len().max(1) as f64).sqrt()
+}
+
+/// Gaps of up to this many periods are interpolated.
+pub const LONGEST_GAP: f64 = 3.0;
+
+/// The median period of stamps.
+pub fn period(t: &[f64]) -> f64 {
+    median(&t.windows(2).map(|pair| pair[1] - pair[0]).collect::<Vec<_>>())
+}
+
+/// Ranges of samples without a gap of more than [`LONGEST_GAP`] periods.
+pub fn pieces(t: &[f64], period: f64) -> Vec<std::ops::Range<usize>> {
+    let mut pieces = Vec::new();
+    let mut start = 0;
+    for k in 1..=t.len() {
+        if k == t.len() || t[k] - t[k - 1] > LONGEST_GAP * period * (1.0 + 1e-9) {
+            pieces.push(start..k);
+            start = k;
+        }
+    }
+    pieces
+}
+
+/// Values at other times by the cubic through the four stamps around each; at the stamps, the values themselves.
+pub fn interpolate(t: &[f64], x: &[f64], at: &[f64]) -> Vec<f64> {
+    let n = t.len();
+    let mut k = 0;
+    at.iter()
+        .map(|&time| {
+            while k + 1 < n && t[k + 1] <= time {
+                k += 1;
+            }
+            if t[k] == time || n < 4 {
+                return x[k];
+            }
+            let first = k.saturating_sub(1).min(n - 4);
+            (first..first + 4)
+                .map(|i| {
+                    let weight: f64 = (first..first + 4).filter(|&j| j != i).map(|j| (time - t[j]) / (t[i] - t[j])).product();
+                    weight * x[i]
+                })
+                .sum()
+        })
+        .collect()
+}
+
+/// A value of an even grid between its samples, by the cubic through four of them; `at` counts samples.
+pub fn between(x: &[f64], at: f64) -> f64 {
+    let last = x.len() - 1;
+    if last < 3 {
+        return x[(at.round().max(0.0) as usize).min(last)];
+    }
+    let at = at.clamp(0.0, last as f64);
+    let k = (at as usize).clamp(1, last - 2);
+    let f = at - k as f64;
+    let [a, b, c, d] = [x[k - 1], x[k], x[k + 1], x[k + 2]];
+    -f * (f - 1.0) * (f - 2.0) / 6.0 * a + (f + 1.0) * (f - 1.0) * (f - 2.0) / 2.0 * b - (f + 1.0) * f * (f - 2.0) / 2.0 * c
+        + (f + 1.0) * f * (f - 1.0) / 6.0 * d
+}
+
+/// Central differences, one-sided at the ends.
+pub fn derivative(x: &[f64], period: f64) -> Vec<f64> {
+    let n = x.len();
+    (0..n)
+        .map(|k| {
+            let (a, b) = (k.saturating_sub(1), (k + 1).min(n - 1));
+            if a == b {
+                0.0
+            } else {
+                (x[b] - x[a]) / ((b - a) as f64 * period)
+            }
+        })
+        .collect()
+}
+
+/// A Butterworth low pass of order 5, run both ways: its magnitude twice, and no phase.
+#[derive(Clone, Debug)]
+pub struct LowPass {
+    /// b0, b1, b2, a1, a2 of each section.
+    sections: Vec<[f64; 5]>,
+    /// Samples that ends are continued by.
+    margin: usize,
+}
+
+impl LowPass {
+    /// With a cutoff and a rate, Hz; the cutoff is at most 0.45 of the rate.
+    pub fn new(cutoff: f64, rate: f64) -> LowPass {
+        let cutoff = cutoff.min(0.45 * rate);
+        // The bilinear transform of the poles, with the cutoff where it belongs (Oppenheim and Schafer).
+        let k = (PI * cutoff / rate).tan();
+        let mut sections = vec![[k / (1.0 + k), k / (1.0 + k), 0.0, (k - 1.0) / (k + 1.0), 0.0]];
+        for pair in [1.0, 2.0] {
+            let damping = 2.0 * (PI * pair / 5.0).cos();
+            let norm = 1.0 / (1.0 + damping * k + k * k);
+            let gain = k * k * norm;
+            sections.push([gain, 2.0 * gain, gain, 2.0 * (k * k - 1.0) * norm, (1.0 - damping * k + k * k) * norm]);
+        }
+        LowPass { sections, margin: (2.0 * rate / cutoff).ceil() as usize }
+    }
+
+    /// The filtered signal; ends are continued by their point reflection.
+    pub fn both_ways(&self, x: &[f64]) -> Vec<f64> {
+        let n = x.len();
+        if n < 2 {
+            return x.to_vec();
+        }
+        let margin = self.margin.min(n - 1);
+        let before = (1..=margin).rev().map(|k| 2.0 * x[0] - x[k]);
+        let after = (1..=margin).map(|k| 2.0 * x[n - 1] - x[n - 1 - k]);
+        let mut all: Vec<f64> = before.chain(x.iter().copied()).chain(after).collect();
+        self.run(&mut all);
+        all.reverse();
+        self.run(&mut all);
+        all.reverse();
+        all[margin..margin + n].to_vec()
+    }
+
+    fn run(&self, x: &mut [f64]) {
+        for &[b0, b1, b2, a1, a2] in &self.sections {
+            // At rest at the first value: each section passes a constant as it is.
+            let first = x[0];
+            let mut s2 = (b2 - a2) * first;
+            let mut s1 = (b1 - a1) * first + s2;
+            for value in x.iter_mut() {
+                let y = b0 * *value + s1;
+                s1 = b1 * *value - a1 * y + s2;
+                s2 = b2 * *value - a2 * y;
+                *value = y;
+            }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_low_pass_has_the_magnitude_of_butterworth_twice_and_no_phase() {
+        let (rate, cutoff) = (200.0, 8.0);
+        let filter = LowPass::new(cutoff, rate);
+        for frequency in [1.0, 4.0, 8.0, 12.0, 20.0] {
+            let wave = |k: usize| (2.0 * PI * frequency * k as f64 / rate).sin();
+            let x: Vec<f64> = (0..4000).map(wave).collect();
+            let y = filter.both_ways(&x);
+            let warped = |f: f64| (PI * f / rate).tan();
+            let gain = 1.0 / (1.0 + (warped(frequency) / warped(cutoff)).powi(10));
+            let error = (1000..3000).map(|k| (y[k] - gain * wave(k)).abs()).fold(0.0, f64::max);
+            assert!(error < 1e-9, "{frequency} Hz: {error}");
+        }
+        let constant = filter.both_ways(&[3.0; 100]);
+        assert!(constant.iter().all(|y| (y - 3.0).abs() < 1e-12));
+    }
+
+    #[test]
+    fn cubics_pass_interpolation_and_gaps_cut() {
+        let t = [0.0, 0.01, 0.021, 0.029, 0.04, 0.05, 0.2, 0.21];
+        let cubic = |t: f64| 1.0 - 2.0 * t + 30.0 * t * t - 400.0 * t * t * t;
+        let x: Vec<f64> = t.iter().map(|&t| cubic(t)).collect();
+        for (at, found) in [0.005, 0.025, 0.045].into_iter().zip(interpolate(&t, &x, &[0.005, 0.025, 0.045])) {
+            assert!((found - cubic(at)).abs() < 1e-12);
+        }
+        assert_eq!(pieces(&t, period(&t)), [0..6, 6..8]);
+        let even: Vec<f64> = (0..9).map(|k| cubic(f64::from(k))).collect();
+        for at in [0.3, 1.0, 4.5, 7.9] {
+            assert!((between(&even, at) - cubic(at)).abs() < 1e-9 * cubic(8.0).abs(), "{at}");
+        }
+        assert_eq!(median(&[3.0, 1.0, 2.0, 10.0]), 2.5);
+    }
+}

@@ -1,0 +1,7 @@
+//! Logs of simulated arms, read and identified.
+
+mod arms;
+mod codes;
+mod coverage;
+mod options;
+mod truth;
