@@ -1,14 +1,18 @@
 //! Small linear algebra over matrices whose sizes are const generics.
 //!
 //! nalgebra's `cholesky` carries no bound beyond the sizes themselves; its `lu`, `qr`, `svd` and `symmetric_eigen` ask for
-//! arithmetic on sizes that a caller with const generics cannot state. The few factorisations needed besides Cholesky are here,
-//! each bounded in its work and without allocation.
+//! arithmetic on sizes that a caller with const generics cannot state. The few factorisations needed are here, and the quadratic
+//! program, each bounded in its work and without allocation.
 
+mod cholesky;
 mod lyapunov;
+mod quadratic_program;
 mod right_inverse;
 mod singular;
 
+pub use cholesky::Cholesky;
 pub use lyapunov::{diagonal_lyapunov, LyapunovBlocks};
+pub use quadratic_program::{quadratic_program, NoOptimum, Optimum};
 pub use right_inverse::{Damping, DampingBelow, DampingError, RightInverse, Solution};
 pub use singular::{left_singular, LeftSingular};
 

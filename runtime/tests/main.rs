@@ -10,6 +10,7 @@ mod manipulability;
 mod model;
 mod operational_space;
 mod plant;
+mod quadratic_program;
 mod random_starts;
 mod refusals;
 mod stability;

@@ -13,7 +13,7 @@ use armgen_runtime::{
         TorqueLimits,
     },
     inverse_kinematics::{follow as follow_posture, follow_redundant},
-    linalg::{self, Damping, DampingBelow, RightInverse},
+    linalg::{self, Cholesky, Damping, DampingBelow, RightInverse},
     manipulability,
     nalgebra::{convert, Matrix3, RealField, SMatrix, SVector, Unit},
     orientation,
@@ -141,6 +141,13 @@ fn algebra<T: RealField + Copy, const M: usize, const N: usize>(j: &SMatrix<T, M
     if let Ok(damping) = Damping::below(number()).at_most(number()) {
         keep((Damping::threshold(&damping), Damping::solve(&damping, j, &vector())));
     }
+    if let Some(factors) = Cholesky::new(&SMatrix::<T, N, N>::from_fn(|_, _| number())) {
+        keep((Cholesky::forward(&factors, &vector()), Cholesky::backward(&factors, &vector())));
+        keep((Cholesky::solve(&factors, &vector()), *Cholesky::factor(&factors)));
+    }
+    let [h, rows] = [(); 2].map(|()| SMatrix::<T, N, N>::from_fn(|_, _| number()));
+    keep(linalg::quadratic_program(&h, &vector(), &rows, &vector()));
+    keep(linalg::quadratic_program(&h, &vector(), j, &vector()));
     keep(linalg::left_singular(j));
     keep(linalg::diagonal_lyapunov::<T, N>(&vector(), &vector(), &vector(), &vector()));
     keep((linalg::is_finite(j), linalg::saturate::<T, N>(&vector(), &vector())));
