@@ -188,6 +188,7 @@ impl<const N: usize> PathDynamics<N> for Chain<N> {
     }
 }
 
+#[allow(clippy::too_many_arguments)] // a row of a table
 const fn row(
     a: f64,
     alpha: f64,
