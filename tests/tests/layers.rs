@@ -133,8 +133,13 @@ const PAGE: Layers = &[
 ];
 
 /// A function is data; its program is executed without it.
-const NUMBERS: Layers =
-    &[("scalar", &[]), ("function", &[]), ("program", &["function", "scalar"]), ("execute", &["function", "program", "scalar"])];
+const NUMBERS: Layers = &[
+    ("scalar", &[]),
+    ("function", &[]),
+    ("program", &["function", "scalar"]),
+    ("execute", &["function", "program", "scalar"]),
+    ("postures", &["scalar"]),
+];
 
 const COMMANDS: Layers =
     &[("input", &[]), ("companions", &[]), ("file_names", &[]), ("commands", &["companions", "file_names", "input"])];
