@@ -134,8 +134,13 @@ const PAGE: Layers = &[
 ];
 
 /// A function is data; its program is executed without it.
-const NUMBERS: Layers =
-    &[("scalar", &[]), ("function", &[]), ("program", &["function", "scalar"]), ("execute", &["function", "program", "scalar"])];
+const NUMBERS: Layers = &[
+    ("scalar", &[]),
+    ("function", &[]),
+    ("program", &["function", "scalar"]),
+    ("execute", &["function", "program", "scalar"]),
+    ("postures", &["scalar"]),
+];
 
 /// Logs and signals know no arm; what estimates knows no report.
 const IDENTIFY: Layers = &[
