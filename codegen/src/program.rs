@@ -14,9 +14,7 @@ use std::collections::BTreeMap;
 use crate::catalogue::{Absent, Argument, Parameter, Quantity, Sizes};
 use crate::exact::Number;
 use crate::kinds::Scalar;
-use crate::pass::Passes;
 use crate::ring::Symbol;
-use crate::schedule::Selection;
 use armgen_description::language::Language;
 
 /// Where the sines and cosines of the emitted module come from.
@@ -213,10 +211,10 @@ pub struct Module {
     pub turn: Option<Number>,
     /// How many states the functions for many states take at a time; none: there are no such functions.
     pub batch: Option<usize>,
-    /// The functions that were asked for.
-    pub selection: Selection,
-    /// Passes that were not used.
-    pub without: Passes,
+    /// The names of the functions that were asked for; none: all.
+    pub asked_for: Option<Vec<String>>,
+    /// The names of the passes that were not used.
+    pub without: Vec<&'static str>,
 }
 
 impl Module {

@@ -13,6 +13,7 @@ use crate::exact::Number;
 use crate::kinds::{JointKind, Scalar};
 use crate::manipulator;
 use crate::parallel::parallel_map;
+
 pub use crate::pass::{Pass, Passes};
 use crate::program::{Cost, Function, Joint, Module, Operand, Operation, Output, Step, Trig};
 use crate::ring::count::DIVISION_COST;
@@ -78,8 +79,8 @@ pub fn module(model: &Model, options: &Options) -> Module {
         trig: options.trig,
         turn: model.field.turn().map(|turn| turn.angle.clone()),
         batch: options.batch.filter(|&lanes| lanes > 0),
-        selection: options.functions.clone(),
-        without: options.without,
+        asked_for: options.functions.names().map(|names| names.map(String::from).collect()),
+        without: Pass::ALL.into_iter().filter(|pass| options.without.contains(*pass)).map(Pass::name).collect(),
     }
 }
 

@@ -324,7 +324,7 @@ impl<'a> Estimate<'a> {
     }
 
     /// Adds terms of friction one at a time where cross-validation in blocks of time asks for them; `chosen` says what there is.
-    pub fn choose(&mut self, chosen: &mut Vec<Vec<Friction>>, candidate: Friction) {
+    pub fn choose(&mut self, chosen: &mut [Vec<Friction>], candidate: Friction) {
         let n = self.arm.dof();
         let (equations, _) = self.equations();
         let bounds: Vec<(f64, f64)> = (0..self.runs.len())

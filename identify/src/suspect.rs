@@ -254,12 +254,10 @@ fn rates(arm: &Arm, log: &Log, period: f64, findings: &mut Findings) {
             findings.push(Finding::new(Code::DegreesSuspected, &log.name, text, help).at(first, 0).in_column(column));
         }
     }
-    if period > 0.5 {
-        if off(1000.0).is_some() {
-            let text = format!("the period is {period} and rates are 1000 times the slopes of the positions");
-            let help = "stamps are in seconds: with milliseconds write `units: {time: ms}` into the options";
-            findings.push(Finding::new(Code::MillisecondsSuspected, &log.name, text, help).at(first, 0).in_column("t"));
-        }
+    if period > 0.5 && off(1000.0).is_some() {
+        let text = format!("the period is {period} and rates are 1000 times the slopes of the positions");
+        let help = "stamps are in seconds: with milliseconds write `units: {time: ms}` into the options";
+        findings.push(Finding::new(Code::MillisecondsSuspected, &log.name, text, help).at(first, 0).in_column("t"));
     }
 }
 

@@ -94,7 +94,7 @@ pub(crate) fn motion(text: &str, seed: u64, seconds: f64, rate: f64) -> Motion {
     let waves: Vec<[f64; 3]> = (0..n * harmonics)
         .map(|k| {
             let amplitude = random.within(0.1, 0.45) / ((k % harmonics) as f64 + 1.0).sqrt();
-            [amplitude, random.within(0.8, 1.2) * 0.6 * (1.0 + (k % harmonics) as f64), random.within(0.0, 6.28)]
+            [amplitude, random.within(0.8, 1.2) * 0.6 * (1.0 + (k % harmonics) as f64), random.within(0.0, std::f64::consts::TAU)]
         })
         .collect();
     let samples = (seconds * rate) as usize;

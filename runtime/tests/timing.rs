@@ -321,7 +321,7 @@ fn every_fault_has_its_place() {
         matches!(pieces(&[[0.0, 1.0, 0.0], [1.1, 2.0, 0.0]]).unwrap_err().fault, PathFault::Jump { joint: 0, by } if (by - 0.1).abs() < 1e-12)
     );
     assert!(
-        matches!(pieces(&[[0.0, 1.0, 0.0], [1.0, 1.0, 1.0]]).unwrap_err().fault, PathFault::Corner { angle } if (angle - 1.570_796).abs() < 1e-5)
+        matches!(pieces(&[[0.0, 1.0, 0.0], [1.0, 1.0, 1.0]]).unwrap_err().fault, PathFault::Corner { angle } if (angle - std::f64::consts::FRAC_PI_2).abs() < 1e-5)
     );
     assert_eq!(pieces(&[[0.0, 1.0, 0.0], [1.0, 3.0, 0.0]]), fault(1.0, 1, PathFault::Scale));
     // q = (s - 1/2)²: the joint stops half-way and turns back.

@@ -6,7 +6,6 @@ use armgen_description::origin::Origin;
 
 use crate::emit::Language;
 use crate::kinds::Scalar;
-use crate::pass::Pass;
 use crate::program::{Module, Trig};
 
 /// The lines at the head of a file, and notes below them.
@@ -41,14 +40,13 @@ fn options(module: &Module, language: Language) -> Vec<String> {
         Trig::Libm if language != Language::Rust => Trig::Std,
         trig => trig,
     };
-    let without = Pass::ALL.into_iter().filter(|pass| module.without.contains(*pass)).map(Pass::name);
     let all = [
         ("scalar", (module.scalar != Scalar::F64).then(|| "f32".to_owned())),
         ("trig", (trig != Trig::of_language(language)).then(|| trig.name().to_owned())),
-        ("without", Some(without.collect::<Vec<_>>().join(",")).filter(|names| !names.is_empty())),
+        ("without", (!module.without.is_empty()).then(|| module.without.join(","))),
         ("batch", module.batch.map(|lanes| lanes.to_string())),
         ("fma", module.functions.iter().any(|function| function.fuse).then(String::new)),
-        ("functions", module.selection.names().map(|names| names.collect::<Vec<_>>().join(","))),
+        ("functions", module.asked_for.as_ref().map(|names| names.join(","))),
     ];
     let mut lines: Vec<String> = Vec::new();
     for (option, value) in all.iter().filter_map(|(option, value)| Some((option, value.as_ref()?))) {

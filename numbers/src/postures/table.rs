@@ -16,7 +16,7 @@ enum Calls {
     ThreePrismatic(Arrangement<6>, [usize; 3]),
     TwoSlides(Arrangement<6>, [usize; 2]),
     ShoulderElbowWrist(Arrangement<7>),
-    General([Arrangement<6>; 2]),
+    General(Box<[Arrangement<6>; 2]>),
 }
 
 /// What a call needs.
@@ -84,7 +84,7 @@ fn table(of: &InverseKinematics<Real>) -> Result<Table, Unsound> {
         Construction::ThreePrismatic(way, turning) if is_ascending(turning) => (Calls::ThreePrismatic(arrangement(way)?, *turning), 6),
         Construction::TwoSlides(way, slides) if is_ascending(slides) => (Calls::TwoSlides(arrangement(way)?, *slides), 6),
         Construction::ShoulderElbowWrist(way) => (Calls::ShoulderElbowWrist(arrangement(way)?), 7),
-        Construction::General(ways) => (Calls::General([arrangement(&ways[0])?, arrangement(&ways[1])?]), 6),
+        Construction::General(ways) => (Calls::General(Box::new([arrangement(&ways[0])?, arrangement(&ways[1])?])), 6),
         _ => return Err(Unsound("a list of places")),
     };
     let given = match &of.redundancy {

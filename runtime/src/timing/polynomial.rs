@@ -70,24 +70,35 @@ pub(super) fn roots<T: RealField + Copy>(p: &Polynomial<T>, length: T) -> [Optio
     for of in chain.iter().rev() {
         let mut found: [Option<T>; ORDER] = [None; ORDER];
         let mut places = found.iter_mut();
+        // A value within its rounding has no sign: the last place before it that has one counts.
         let mut left = T::zero();
-        let mut value_left = value(of, left);
+        let mut sign_left = sign(of, left);
         for right in roots.iter().flatten().copied().chain([length]) {
-            let value_right = value(of, right);
-            if (value_left < T::zero() && value_right > T::zero()) || (value_left > T::zero() && value_right < T::zero()) {
+            let sign_right = sign(of, right);
+            if sign_right == T::zero() {
+                continue;
+            }
+            if sign_left + sign_right == T::zero() {
                 if let Some(place) = places.next() {
                     *place = Some(bisected(of, left, right));
                 }
-            } else if value_right == T::zero() && value_left != T::zero() && right < length {
-                if let Some(place) = places.next() {
-                    *place = Some(right);
-                }
             }
-            (left, value_left) = (right, value_right);
+            (left, sign_left) = (right, sign_right);
         }
         roots = found;
     }
     roots
+}
+
+/// The sign of p(t), 0 where the value is within the rounding of Horner's rule: |error| <= 2 n u sum |p_k| t^k (Higham 2002, section 5.1).
+fn sign<T: RealField + Copy>(p: &Polynomial<T>, t: T) -> T {
+    let sizes = p.map(|c| c.abs());
+    let rounding = value(&sizes, t.abs()) * T::default_epsilon() * lit(ORDER as f64);
+    match value(p, t) {
+        v if v > rounding => T::one(),
+        v if v < -rounding => -T::one(),
+        _ => T::zero(),
+    }
 }
 
 /// The root between two places at which the polynomial has opposite signs, to the last bit.

@@ -13,7 +13,9 @@ use std::collections::BTreeMap;
 
 use armgen_description::language::Language;
 
-use super::plain::{camel, names_of, promised, sizes, Body, Comments, Constants, Functions, Lines, Parts, Syntax, CONSTANTS};
+use super::plain::{
+    camel, is_of_some_arms, names_of, promised, sizes, Body, Comments, Constants, Functions, Lines, Parts, Syntax, CONSTANTS,
+};
 use super::{Constant, Fault, Function, Module};
 use crate::contract::{Length, Returned, Sizes};
 use crate::enclosure::Float;
@@ -45,7 +47,7 @@ pub(super) fn read(text: &str) -> Result<Module, Fault> {
     let mut constants: BTreeMap<String, Constant> = BTreeMap::new();
     for (name, ..) in CONSTANTS {
         let begin = format!("export const {name} = ");
-        if name.contains("BASE_") && !lines.peek().starts_with(&begin) {
+        if is_of_some_arms(name) && !lines.peek().starts_with(&begin) {
             continue;
         }
         let number = lines.number();

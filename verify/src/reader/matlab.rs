@@ -16,7 +16,9 @@ use std::collections::BTreeMap;
 
 use armgen_description::language::Language;
 
-use super::plain::{camel, names_of, promised, sizes, Body, Comments, Constants, Entry, Lines, Parts, Syntax, CONSTANTS};
+use super::plain::{
+    camel, is_of_some_arms, names_of, promised, sizes, Body, Comments, Constants, Entry, Lines, Parts, Syntax, CONSTANTS,
+};
 use super::{Constant, Fault, Function, Module, LONGEST};
 use crate::contract::{Array, Length, Promise, Sizes};
 use crate::enclosure::Float;
@@ -159,7 +161,7 @@ fn constants(lines: &mut Lines<'_>) -> Result<BTreeMap<String, Constant>, Fault>
     let mut constants = BTreeMap::new();
     for (name, ..) in CONSTANTS {
         let begin = format!("    m.{} = ", camel(&name.to_ascii_lowercase()));
-        if name.contains("BASE_") && !lines.peek().starts_with(&begin) {
+        if is_of_some_arms(name) && !lines.peek().starts_with(&begin) {
             continue;
         }
         let number = lines.number();

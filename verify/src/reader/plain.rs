@@ -17,7 +17,7 @@ mod parts;
 mod place;
 
 pub(super) use body::{Body, Syntax};
-pub(super) use constants::{sizes, Constants, Entry, CONSTANTS};
+pub(super) use constants::{is_of_some_arms, sizes, Constants, Entry, CONSTANTS};
 pub(super) use lines::{Comments, Lines};
 pub(super) use parts::Parts;
 

@@ -14,7 +14,9 @@ use std::collections::BTreeMap;
 
 use armgen_description::language::Language;
 
-use super::plain::{names_of, promised, sizes, Body, Comments, Constants, Functions, Lines, Parts, Syntax, CONSTANTS};
+use super::plain::{
+    is_of_some_arms, names_of, promised, sizes, Body, Comments, Constants, Functions, Lines, Parts, Syntax, CONSTANTS,
+};
 use super::{Constant, Fault, Function, Module};
 use crate::contract::{Length, Promise, Returned, Sizes};
 use crate::enclosure::Float;
@@ -80,7 +82,7 @@ pub(super) fn read(text: &str) -> Result<Module, Fault> {
     let mut constants: BTreeMap<String, Constant> = BTreeMap::new();
     for (name, ..) in CONSTANTS {
         let begin = format!("{name}: Final = ");
-        if name.contains("BASE_") && !lines.peek().starts_with(&begin) {
+        if is_of_some_arms(name) && !lines.peek().starts_with(&begin) {
             continue;
         }
         let number = lines.number();

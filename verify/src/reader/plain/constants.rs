@@ -57,6 +57,11 @@ pub(in crate::reader) const CONSTANTS: [(&str, Entry, usize); 16] = [
     ("NOMINAL_BASE_PARAMETERS", Entry::Real, 1),
 ];
 
+/// Whether only the modules of some arms have a constant.
+pub(in crate::reader) fn is_of_some_arms(name: &str) -> bool {
+    name == NOMINAL_GRAVITY || name.contains("BASE_")
+}
+
 impl Constants {
     /// Reads the value of a constant.
     pub(in crate::reader) fn read(&self, name: &str, text: &str, line: usize) -> Result<Constant, Fault> {
