@@ -277,13 +277,7 @@ impl<T: Solved> Solver<T> {
 }
 
 /// The calls, in double precision.
-mod double {
-    use armgen_inverse_kinematics::f64 as block;
-    include!("postures/table.rs");
-}
+mod double;
 
 /// The calls, in single precision.
-mod single {
-    use armgen_inverse_kinematics::f32 as block;
-    include!("postures/table.rs");
-}
+mod single;

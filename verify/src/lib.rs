@@ -238,7 +238,6 @@ fn fill(report: &mut Report, prepared: &Prepared) {
         }
     }
     report.identities = identities::check(checker, module, &report.functions, &nominal);
-    report.options = module.options();
     if let Some(chosen) = module.chosen() {
         report.left_out = checker.lacking(module).into_iter().filter(|name| !chosen.contains(name)).collect();
         report.identities.retain(|identity| identity.holds != Err(identities::ABSENT.into()));

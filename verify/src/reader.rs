@@ -99,6 +99,21 @@ pub struct Function {
     pub program: Program,
 }
 
+/// The options of `armgen generate` that the head of a text names, even of a text that is no module; empty where it names none.
+pub fn options_of(text: &str) -> String {
+    stated(text.lines().take(items::MOST_HEAD).map(|line| line.trim_start_matches([' ', '/', '*', '%', '#']).trim_end()))
+}
+
+/// The options among lines of a head, which are broken at blanks and behind commas.
+fn stated<'a>(lines: impl Iterator<Item = &'a str>) -> String {
+    let stated = lines.skip_while(|line| !line.starts_with(OPTIONS)).take_while(|line| !line.is_empty());
+    let joined = stated.fold(String::new(), |all, line| match all.is_empty() || all.ends_with(',') {
+        true => all + line,
+        false => all + " " + line,
+    });
+    joined.strip_prefix(OPTIONS).unwrap_or_default().trim_start().to_owned()
+}
+
 impl Module {
     /// Reads the text of a module. In Rust, a fault in a function's body becomes part of the result.
     pub fn read<'a>(text: impl Into<ModuleText<'a>>) -> Result<Module, Fault> {
@@ -115,13 +130,7 @@ impl Module {
 
     /// The options of `armgen generate` that the head names; empty where it names none.
     pub fn options(&self) -> String {
-        let lines = self.head.iter().map(|line| line.trim());
-        let stated = lines.skip_while(|line| !line.starts_with(OPTIONS)).take_while(|line| !line.is_empty());
-        let joined = stated.fold(String::new(), |all, line| match all.is_empty() || all.ends_with(',') {
-            true => all + line,
-            false => all + " " + line,
-        });
-        joined.strip_prefix(OPTIONS).unwrap_or_default().trim_start().to_owned()
+        stated(self.head.iter().map(|line| line.trim()))
     }
 
     /// The functions that were asked for, if the head names some.

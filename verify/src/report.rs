@@ -103,8 +103,6 @@ pub struct Report {
     pub scalar: String,
     /// `libm`, `std` or `fast`; empty without sines.
     pub trig: String,
-    /// The options of `armgen generate` that the head of the module names.
-    pub options: String,
     /// SHA-256 of the description's text, hexadecimal.
     pub input: String,
     /// SHA-256 of the module's text, hexadecimal.
@@ -130,7 +128,6 @@ impl Report {
             robot: String::new(),
             scalar: String::new(),
             trig: String::new(),
-            options: String::new(),
             input,
             output,
             faults: Vec::new(),

@@ -9,7 +9,7 @@ use armgen_codegen::emit::{camel, Language, Origin};
 use armgen_codegen::source::Source;
 use armgen_verify::certificate::Certificate;
 use armgen_verify::inverse_kinematics;
-use armgen_verify::reader::{matlab, ModuleText};
+use armgen_verify::reader::{matlab, options_of, ModuleText};
 use armgen_verify::report::Report;
 use indicatif::{ProgressBar, ProgressStyle};
 
@@ -83,8 +83,9 @@ fn verified(description: &Path, module: &Path, language: Option<Language>) -> Re
     terminal::error(&format!("{place}: {fault}"));
     let why = companions::why_different(text.text(), &source);
     let mut options = if language == Language::Rust { String::new() } else { format!(" --language {}", language.name()) };
-    if !report.options.is_empty() {
-        options += &format!(" {}", report.options);
+    let named = options_of(text.text());
+    if !named.is_empty() {
+        options += &format!(" {named}");
     }
     let (description, module) = (description.display(), module.display());
     terminal::note(&format!(

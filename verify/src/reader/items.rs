@@ -87,7 +87,7 @@ pub(super) struct Items<'a> {
 }
 
 /// Maximum number of comment lines before all items.
-const MOST_HEAD: usize = 64;
+pub(super) const MOST_HEAD: usize = 64;
 
 /// Takes the argument and result types of a public function, which must follow its name; a comma may follow the last argument.
 fn signature(parser: &mut Parser<'_>, signature: &str) -> Result<(), Fault> {
