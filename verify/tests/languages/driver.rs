@@ -44,7 +44,7 @@ impl States {
     }
 
     fn all(&self) -> impl Iterator<Item = &[Real]> {
-        self.numbers.chunks(PARAMETERS + 6 * DOF)
+        self.numbers.chunks(PARAMETERS + 6 * DOF + 3)
     }
 }
 
