@@ -436,7 +436,7 @@ fn random_arms_keep_their_enclosures_and_limits() {
 }
 
 #[test]
-#[ignore = "full: a hundred arms, 10000 places each"]
+#[ignore = "wide"]
 fn many_random_arms_keep_their_enclosures_and_limits() {
     random_arms(100, 10_000, 100);
 }
