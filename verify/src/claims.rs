@@ -145,15 +145,6 @@ impl Claims {
         Resolved { values, others }
     }
 
-    /// Whether some literal of a module matches no constant claimed for its function.
-    pub fn lack(&self, module: &Module) -> bool {
-        module.programs().any(|(name, program)| {
-            let known: BTreeSet<u64> =
-                self.of(name).iter().filter_map(|claim| Some(module.real.nearest(claim)?.abs().to_bits())).collect();
-            program.literals.iter().any(|literal| !known.contains(&literal.value.to_bits()))
-        })
-    }
-
     /// A description of a literal of an entry that matches no claimed constant; it may explain the difference.
     pub fn suspect(&self, program: &Program, entry: &str, real: Float) -> Option<String> {
         let claims: Vec<(f64, &Formula)> =

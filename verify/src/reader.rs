@@ -133,11 +133,16 @@ impl Module {
         stated(self.head.iter().map(|line| line.trim()))
     }
 
+    /// The names that an option of the head lists, if it has the option.
+    pub fn listed(&self, option: &str) -> Option<Vec<String>> {
+        let options = self.options();
+        let names = options.split("--").find_map(|words| words.strip_prefix(option)?.strip_prefix(' '))?;
+        Some(names.trim_end().split(',').map(String::from).collect())
+    }
+
     /// The functions that were asked for, if the head names some.
     pub fn chosen(&self) -> Option<BTreeSet<String>> {
-        let options = self.options();
-        let (_, names) = options.split_once("--functions ")?;
-        Some(names.split(' ').next()?.split(',').map(String::from).collect())
+        Some(self.listed("functions")?.into_iter().collect())
     }
 
     /// An empty module with 64-bit floats.
