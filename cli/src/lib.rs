@@ -36,7 +36,7 @@ use commands::package::Manifest;
 use commands::{convert, export, import};
 
 pub use commands::check::summary;
-pub use commands::show::{items, steps_of_inverse_kinematics};
+pub use commands::show::{items, steps_of_inverse_kinematics, usual_form};
 
 const STYLES: Styles = Styles::styled()
     .header(AnsiColor::Green.on_default().bold())

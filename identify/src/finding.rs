@@ -118,11 +118,7 @@ impl Finding {
 
 impl fmt::Display for Finding {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let level = match self.severity {
-            Severity::Error => "error",
-            Severity::Warning => "warning",
-        };
-        writeln!(f, "{level}[{}]: {}", self.code, self.text)?;
+        writeln!(f, "{}[{}]: {}", self.severity.name(), self.code, self.text)?;
         let place = match (self.line, self.at) {
             (0, _) => self.log.clone(),
             (line, 0) => format!("{}:{line}", self.log),

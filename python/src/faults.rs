@@ -2,7 +2,7 @@
 
 use std::panic::{catch_unwind, AssertUnwindSafe};
 
-use armgen_codegen::diagnostic::{Colour, Diagnostic, Diagnostics, Severity};
+use armgen_codegen::diagnostic::{Colour, Diagnostic, Diagnostics};
 use armgen_codegen::source::Source;
 use pyo3::prelude::*;
 use pyo3::types::PyTuple;
@@ -55,10 +55,9 @@ pub(crate) fn listed<'py>(py: Python<'py>, source: &Source, diagnostics: &Diagno
         }
         let span = diagnostic.span();
         let (start, end) = (source.place(span.start), source.place(span.end));
-        let severity = if diagnostic.code.severity() == Severity::Error { "error" } else { "warning" };
         all.push(class.call1((
             diagnostic.code.name(),
-            severity,
+            diagnostic.code.severity().name(),
             &diagnostic.message,
             &diagnostic.help,
             start.line,

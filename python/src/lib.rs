@@ -20,14 +20,14 @@ use armgen_codegen::catalogue;
 use armgen_codegen::suggest::function_meant;
 use pyo3::prelude::*;
 
-/// Every function of the catalogue: name, title, arguments, and the names of the parts of its result.
+/// Every function of the catalogue: name, title, arguments of arms with a fixed gravity, and the names of the parts of its result.
 #[pyfunction]
 fn catalogue_of_functions() -> Vec<(String, &'static str, Vec<&'static str>, Vec<&'static str>, usize)> {
     catalogue::functions()
         .map(|(quantity, with)| {
             let parts = quantity.result.iter().map(|part| part.name).collect();
             let dimensions = quantity.result[0].lengths.len();
-            let arguments = numbers::arguments(quantity, with).iter().map(|argument| argument.name()).collect();
+            let arguments = quantity.arguments_of(with, false).map(|argument| argument.name()).collect();
             (quantity.function_name(with), quantity.documentation.title, arguments, parts, dimensions)
         })
         .collect()

@@ -5,7 +5,7 @@
 
 use std::sync::{Arc, Mutex, PoisonError};
 
-use armgen_codegen::catalogue::{Argument, Length, Quantity};
+use armgen_codegen::catalogue::{Length, Quantity};
 use armgen_codegen::program::{Cost, Function as Steps, Module};
 use armgen_evaluate::{Program, Workspace};
 use numpy::{
@@ -24,7 +24,7 @@ use crate::robot::Robot;
 const MANY: usize = 64;
 
 /// The most arguments that a function has.
-const ARGUMENTS: usize = 5;
+const ARGUMENTS: usize = 6;
 
 /// A function that is ready to be executed.
 pub(crate) struct Derived {
@@ -139,11 +139,6 @@ impl Derived {
     }
 }
 
-/// The arguments of a function of the catalogue.
-pub(crate) fn arguments(quantity: &Quantity, with: bool) -> Vec<Argument> {
-    with.then_some(Argument::Pi).into_iter().chain(quantity.arguments.iter().copied()).collect()
-}
-
 // A function of an arm over arrays. What is documentation here would hide the one of each function.
 #[pyclass(frozen, module = "armgen")]
 pub(crate) struct Function {
@@ -163,7 +158,8 @@ impl Function {
         let (quantity, with) = (robot.functions[index].quantity, robot.functions[index].with);
         let base = if quantity.has_length(Length::BaseParameters) { robot.model.base_parameters().len() } else { 0 };
         let sizes = robot.model.sizes_with(base);
-        let arguments = arguments(quantity, with).into_iter().map(|argument| (argument.name(), argument.length().of(&sizes)));
+        let of_arm = quantity.arguments_of(with, robot.model.manipulator.gravity_is_argument);
+        let arguments = of_arm.map(|argument| (argument.name(), argument.length().of(&sizes)));
         let shape = |part: &armgen_codegen::catalogue::ResultPart| part.lengths.iter().map(|length| length.of(&sizes)).collect();
         let structure = match quantity.result {
             [_] => None,
@@ -427,7 +423,8 @@ impl Function {
         let list: Vec<&str> = self.arguments.iter().map(|(name, _)| *name).collect();
         let mut text = format!("{}({}, *, out=None, threads=1)\n\n", self.name(), list.join(", "));
         text += &format!("{}\n\n{}\n\n", words.title, words.formula);
-        for argument in arguments(quantity, self.robot.functions[self.index].with) {
+        let with = self.robot.functions[self.index].with;
+        for argument in quantity.arguments_of(with, self.robot.model.manipulator.gravity_is_argument) {
             text += &format!("{}: {}\n", argument.name(), argument.meaning());
         }
         text += &format!("Returns {}\n", words.result);

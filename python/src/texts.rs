@@ -4,9 +4,6 @@ use armgen_codegen::show::{Form, Reading, Sheet, Style};
 use armgen_codegen::source::Source;
 use armgen_codegen::Model;
 
-/// Arms of so many joints have closed forms that a person reads.
-const FEW_JOINTS: usize = 4;
-
 /// A quantity as `armgen show` writes it.
 ///
 /// # Errors
@@ -20,8 +17,8 @@ pub(crate) fn shown(
     format: &str,
 ) -> Result<String, String> {
     let form = match form {
-        None if model.manipulator.dof() <= FEW_JOINTS => Form::Closed,
-        None | Some("shortest") => Form::Shortest,
+        None => armgen_commands::usual_form(model),
+        Some("shortest") => Form::Shortest,
         Some("closed") => Form::Closed,
         Some("steps") => Form::Steps,
         Some(other) => return Err(format!("form: \"shortest\", \"closed\" or \"steps\", not \"{other}\"")),

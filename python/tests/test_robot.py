@@ -274,3 +274,15 @@ def test_stub():
 
     path = ROOT / "python/armgen/__init__.pyi"
     assert path.read_text(encoding="utf-8") == stub.text(), "run python/tests/stub.py"
+
+
+def test_gravity_may_be_an_argument() -> None:
+    text = (ROBOTS / "scara4.yaml").read_text()
+    fixed = armgen.loads(text, name="fixed.yaml")
+    line = next(line for line in text.splitlines() if line.startswith("gravity:"))
+    mounted = armgen.loads(text.replace(line, "gravity: {argument: " + line.split(":", 1)[1] + "}"), name="mounted.yaml")
+    q, g0 = np.array([0.3, -0.5, 0.1, 0.7]), fixed.gravity_vector
+    assert mounted.gravity.arguments[0] == "g0" and "g0" not in fixed.gravity.arguments
+    np.testing.assert_allclose(mounted.gravity(g0, q), fixed.gravity(q), rtol=0, atol=1e-12)
+    np.testing.assert_allclose(mounted.gravity(2 * g0, q), 2 * fixed.gravity(q), rtol=0, atol=1e-12)
+    assert mounted.inertia_matrix(q).tobytes() == fixed.inertia_matrix(q).tobytes()

@@ -22,14 +22,22 @@ pub(crate) struct Asked {
 /// Arms of so many joints have closed forms that a person reads.
 const FEW_JOINTS: usize = 4;
 
+/// The form of an arm's equations unless another is asked for.
+pub fn usual_form(model: &Model) -> Form {
+    if model.manipulator.dof() <= FEW_JOINTS {
+        Form::Closed
+    } else {
+        Form::Shortest
+    }
+}
+
 pub(crate) fn run(file: &Path, quantities: &[String], asked: &Asked) -> u8 {
     let model = match input::model(file) {
         Ok(model) => model,
         Err(code) => return code,
     };
     let Asked { symbolic, form, digits, format } = *asked;
-    let own = if model.manipulator.dof() <= FEW_JOINTS { Form::Closed } else { Form::Shortest };
-    let style = Style { form: form.unwrap_or(own), digits };
+    let style = Style { form: form.unwrap_or_else(|| usual_form(&model)), digits };
     let as_it_comes = form.is_none() && digits.is_none();
     if quantities.iter().any(|name| name.replace('-', "_") == INVERSE_KINEMATICS) {
         return inverse_kinematics(&model, quantities.len() > 1 || symbolic || !as_it_comes || format != ShowFormat::Text);

@@ -3,7 +3,7 @@
 //! Keys keep their names and meaning within a version; new ones may be added.
 
 use armgen_codegen::derive::parameters::nominal;
-use armgen_codegen::diagnostic::{Diagnostic, Severity};
+use armgen_codegen::diagnostic::Diagnostic;
 use armgen_codegen::exact::{Number, Polynomial};
 use armgen_codegen::kinds::JointKind;
 use armgen_codegen::manipulator::Manipulator;
@@ -61,7 +61,7 @@ fn of_arm(arm: &Manipulator) -> Value {
 fn of_diagnostic(diagnostic: &Diagnostic, source: &Source) -> Value {
     let mut object = place(diagnostic.span(), source);
     object["code"] = json!(diagnostic.code.name());
-    object["severity"] = json!(if diagnostic.code.severity() == Severity::Error { "error" } else { "warning" });
+    object["severity"] = json!(diagnostic.code.severity().name());
     object["message"] = json!(diagnostic.message);
     object["help"] = json!(diagnostic.help);
     object["labels"] = diagnostic

@@ -4,7 +4,7 @@
 use std::collections::BTreeMap;
 use std::path::Path;
 
-use armgen_codegen::diagnostic::{AnyCode, Diagnostic, Label, Severity};
+use armgen_codegen::diagnostic::{AnyCode, Diagnostic, Label};
 use armgen_codegen::source::Source;
 use serde_json::{json, Value};
 
@@ -30,18 +30,11 @@ pub(super) fn document(files: &[Judged]) -> Value {
     })
 }
 
-fn level(code: AnyCode) -> &'static str {
-    match code.severity() {
-        Severity::Error => "error",
-        Severity::Warning => "warning",
-    }
-}
-
 fn rule(code: &AnyCode) -> Value {
     json!({
         "id": code.name(),
         "shortDescription": { "text": code.about() },
-        "defaultConfiguration": { "level": level(*code) },
+        "defaultConfiguration": { "level": code.severity().name() },
     })
 }
 
@@ -50,7 +43,7 @@ fn result(diagnostic: &Diagnostic, rule: Option<usize>, source: &Source) -> Valu
     let mut result = json!({
         "ruleId": code.name(),
         "ruleIndex": rule,
-        "level": level(*code),
+        "level": code.severity().name(),
         "message": { "text": format!("{message}\nhelp: {help}") },
         "locations": [location(&labels[0], source)],
     });
