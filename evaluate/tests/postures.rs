@@ -83,25 +83,11 @@ fn postures_are_found_again() {
     assert_eq!(seen, wanted.len());
 }
 
+/// The random numbers of the emitted tests.
+const RANDOM: &str = include_str!("../../codegen/tests/inverse_kinematics/random.rs");
+
 /// The program that solves at the poses of the emitted tests and at special ones, and prints each with its postures.
 const PROGRAM: &str = r#"
-/// SplitMix64 (Steele, Lea, Flood 2014).
-struct Random(u64);
-
-impl Random {
-    fn next(&mut self) -> u64 {
-        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
-        let mut z = self.0;
-        z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-        z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
-        z ^ (z >> 31)
-    }
-
-    fn between(&mut self, low: f64, high: f64) -> f64 {
-        low + (high - low) * ((self.next() >> 11) as f64 / (1u64 << 53) as f64)
-    }
-}
-
 macro_rules! print {
     ($module:ident, $ik:ident, $poses:expr, $solve:expr, $redundancy:expr) => {{
         use $ik::{Real, DOF};
@@ -194,7 +180,7 @@ impl Project {
                         [workspace]\n\n[profile.dev]\nopt-level = 1\ndebug = false\nincremental = false\n";
         self.write("Cargo.toml", manifest);
         self.write("Cargo.lock", &std::fs::read_to_string(workspace().join("Cargo.lock")).expect("the lock file"));
-        self.write("src/main.rs", &format!("{PROGRAM}\n{}\nfn main() {{\n{}}}\n", self.main, self.calls));
+        self.write("src/main.rs", &format!("{RANDOM}{PROGRAM}\n{}\nfn main() {{\n{}}}\n", self.main, self.calls));
         let cargo = std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into());
         let mut command = Command::new(cargo);
         command.args(["run", "--quiet", "--offline"]).current_dir(&self.folder);

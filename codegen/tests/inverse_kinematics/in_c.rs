@@ -69,7 +69,7 @@ fn compare(folder: &Path, arms: &[Arm], compilers: &[(&str, &[&str])], poses: us
         "[package]\nname = \"judge\"\nversion = \"1.0.0\"\nedition = \"2021\"\n\n[dependencies]\nlibm = \"0.2\"\n\n[workspace]\n\n\
          [profile.dev]\nopt-level = 1\ndebug = false\nincremental = false\n",
     );
-    let mut main = include_str!("compare.rs").to_owned();
+    let mut main = concat!(include_str!("compare.rs"), "\n", include_str!("random.rs")).to_owned();
     let mut checks = String::new();
     for Arm { name, suffix, robot, ik, c } in arms {
         let module = format!("{name}_{suffix}");

@@ -1,18 +1,5 @@
 // What judges emitted inverse kinematics, compiled with the modules that come after it.
 
-/// SplitMix64 (Steele, Lea, Flood 2014).
-struct Random(u64);
-
-impl Random {
-    fn between(&mut self, low: f64, high: f64) -> f64 {
-        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
-        let mut z = self.0;
-        z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-        z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
-        low + (high - low) * (((z ^ (z >> 31)) >> 11) as f64 / (1u64 << 53) as f64)
-    }
-}
-
 /// The largest difference between the joint variables of two postures, angles modulo whole turns.
 fn distance<R: Copy + Into<f64>>(x: &[R], y: &[R], revolute: &[bool]) -> f64 {
     let turn = std::f64::consts::TAU;

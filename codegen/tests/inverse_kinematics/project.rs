@@ -18,7 +18,10 @@ impl Project {
     pub(crate) fn new(name: &str) -> Project {
         let project = Project {
             folder: Path::new(env!("CARGO_TARGET_TMPDIR")).join(name),
-            main: format!("#![allow(unused_macros, dead_code)]\n{}", include_str!("judge.rs")),
+            main: format!(
+                "#![allow(unused_macros, dead_code)]\n{}",
+                concat!(include_str!("judge.rs"), "\n", include_str!("random.rs"))
+            ),
             checks: String::new(),
         };
         project.write("Cargo.lock", &std::fs::read_to_string(workspace().join("Cargo.lock")).expect("the lock file"));
