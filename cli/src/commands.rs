@@ -12,4 +12,5 @@ pub(crate) mod package;
 pub(crate) mod page;
 pub(crate) mod schema;
 pub(crate) mod show;
+pub(crate) mod time;
 pub(crate) mod verify;

@@ -51,6 +51,7 @@ const EXAMPLES: &str = "Examples:
   armgen verify robot.yaml robot.rs            whether that file equals the equations
   armgen import robot.urdf --out robot.yaml    a URDF or a MuJoCo model as a description
   armgen page robot.yaml --out robot.html      the arm, its equations and numbers, to look at
+  armgen time robot.yaml path.yaml             the fastest motion on a path within the limits
 
 Exit codes: 0 done, 1 something is wrong in a file or outside its expectation,
 2 a file cannot be read, is not UTF-8 or cannot be written, or the options are wrong.";
@@ -289,6 +290,28 @@ Exit codes: 0 done, 1 the description, the options or a log is faulty, or parame
         #[arg(long)]
         accept_unexcited: bool,
     },
+    /// Find the fastest motion on a joint path within limits, with a bound for all motions
+    #[command(after_help = "Examples:
+  armgen time robot.yaml path.yaml
+  armgen time robot.yaml path.yaml --csv motion.csv --period 0.004
+  armgen time robot.yaml path.yaml --json timing.json --gap 0.0001
+  armgen time robot.yaml --check motion.csv       does any trajectory keep the limits?
+
+A path is a YAML file with points or polynomials, limits where they differ from those of the
+description, and speeds at its ends (docs/timing.md). Limits of position, speed, acceleration and
+torque hold between samples, too.
+Exit codes: 0 done, 1 a file is faulty, the path has no motion within the limits, or with --check
+a limit is exceeded, 2 a file cannot be read or written, or the options are wrong.")]
+    Time {
+        /// Description of the robot arm
+        #[arg(value_name = "ROBOT.yaml", value_hint = ValueHint::FilePath)]
+        file: PathBuf,
+        /// The path; with --check its limits alone are used
+        #[arg(value_name = "PATH.yaml", value_hint = ValueHint::FilePath, required_unless_present = "check")]
+        path: Option<PathBuf>,
+        #[command(flatten)]
+        asked: commands::time::Asked,
+    },
     /// Count the operations of every emitted function
     #[command(after_help = "Examples:
   armgen count robot.yaml
@@ -496,6 +519,7 @@ fn run(command: Command) -> u8 {
             let asked = commands::identify::Asked { logs, options, validate, load, report, skip_bad, accept_unexcited };
             commands::identify::run(&file, &asked)
         }
+        Command::Time { file, path, asked } => commands::time::run(&file, path.as_deref(), &asked),
         Command::Count { file, format, functions, without, fma } => commands::count::run(&file, format, &functions, without, fma),
         Command::Page { file, out, logs } => commands::page::run(&file, out, &logs),
         Command::Run { arguments: _ } => {

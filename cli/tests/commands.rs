@@ -8,6 +8,8 @@ mod companions;
 mod import;
 #[path = "commands/show.rs"]
 mod show;
+#[path = "commands/time.rs"]
+mod time;
 #[path = "commands/verify.rs"]
 mod verify;
 #[path = "commands/written.rs"]
@@ -100,9 +102,21 @@ fn completions_for_every_shell() {
 
 #[test]
 fn help_has_examples() {
-    for command in
-        ["", "check", "show", "generate", "import", "convert", "export", "verify", "count", "page", "schema", "completions"]
-    {
+    for command in [
+        "",
+        "check",
+        "show",
+        "generate",
+        "import",
+        "convert",
+        "export",
+        "verify",
+        "time",
+        "count",
+        "page",
+        "schema",
+        "completions",
+    ] {
         let arguments: Vec<&str> = [command, "--help"].into_iter().filter(|a| !a.is_empty()).collect();
         let text = out(&check(&arguments, 0));
         assert!(text.contains("Examples:\n"), "armgen {arguments:?}");

@@ -670,7 +670,7 @@ fn what_executes_programs_depends_on_no_robot() {
 /// The program builds while robot.yaml is faulty: nothing that it is made of holds the robot of robot.yaml.
 #[test]
 fn the_program_has_no_robot_inside() {
-    let of_a_robot = ["armgen-generated", "armgen-lab", "armgen-runtime"];
+    let of_a_robot = ["armgen-generated", "armgen-lab"];
     for name in of_a_robot {
         assert!(!tree("armgen").contains(name), "armgen depends on {name}");
         assert!(tree("armgen-lab").contains(name), "the lab depends on {name}");

@@ -1,0 +1,213 @@
+//! `armgen time`: the fastest motion on a joint path, and what duration no motion can come below.
+//!
+//! ```text
+//! file.rs    the file of a path -> points or pieces, limits, ends
+//! curve.rs   points -> pieces
+//! arm.rs     the description, executed
+//! faults.rs  why a path cannot be timed, at its place in the file
+//! result.rs  the motion as numbers, CSV and JSON
+//! check.rs   trajectories of others against limits
+//! ```
+
+mod arm;
+mod check;
+#[allow(dead_code)] // The list of all codes serves tools; the page and the tests name them.
+mod code;
+mod curve;
+mod faults;
+mod file;
+mod result;
+
+use std::path::{Path, PathBuf};
+use std::time::Duration;
+
+use armgen_codegen::diagnostic::Diagnostics;
+use armgen_codegen::kinds::{JointKind, Scalar, MAX_JOINTS};
+use armgen_codegen::manipulator::Manipulator;
+use armgen_codegen::source::Source;
+use armgen_runtime::timing::{self, time_optimal, Ends, JointPath, Node, Piece, Segment, Workspace};
+
+use super::verify::with_spinner;
+use crate::output::write_other;
+use crate::{input, terminal, DONE, FAULTY, UNREADABLE};
+use arm::{Arm, Unfit};
+use faults::Faults;
+use file::File;
+use result::Motion;
+
+/// How a path is timed, and what is written.
+#[derive(Debug, clap::Args)]
+pub(crate) struct Asked {
+    /// File of samples to write: t, and q, dq, ddq, tau of each joint
+    #[arg(long, value_name = "MOTION.csv", value_hint = clap::ValueHint::FilePath)]
+    csv: Option<PathBuf>,
+    /// File of the law, its bound and the limits to write
+    #[arg(long, value_name = "TIMING.json", value_hint = clap::ValueHint::FilePath)]
+    json: Option<PathBuf>,
+    /// Judge the samples of a file instead: t, and q, dq, ddq of each joint, the last two optional
+    #[arg(long, value_name = "TRAJECTORY.csv", value_hint = clap::ValueHint::FilePath, conflicts_with_all = ["csv", "json"])]
+    check: Option<PathBuf>,
+    /// Time between samples, s
+    #[arg(long, value_name = "SECONDS", default_value = "0.001", value_parser = period)]
+    period: Duration,
+    /// Segments at most
+    #[arg(long, value_name = "N", default_value_t = 1000, value_parser = clap::value_parser!(u32).range(5..=100_000))]
+    segments: u32,
+    /// Refinement stops at this gap between duration and lower bound
+    #[arg(long, value_name = "SHARE", default_value = "0.001", value_parser = share)]
+    gap: f64,
+}
+
+fn period(text: &str) -> Result<Duration, String> {
+    let seconds: f64 = text.parse().map_err(|_| "a number of seconds is needed".to_owned())?;
+    let period = Duration::try_from_secs_f64(seconds).map_err(|_| "a positive number of seconds is needed".to_owned())?;
+    if period < Duration::from_micros(1) {
+        return Err("the shortest period is a microsecond, 1e-6".to_owned());
+    }
+    Ok(period)
+}
+
+fn share(text: &str) -> Result<f64, String> {
+    match text.parse::<f64>() {
+        Ok(share) if share > 0.0 && share.is_finite() => Ok(share),
+        _ => Err("a share above 0 is needed, for instance 0.001 for 0.1 %".to_owned()),
+    }
+}
+
+/// Arms of up to this many joints are timed as such: the others, as arms of [`MAX_JOINTS`]. Joints that the arm does not have rest.
+const USUAL: usize = 8;
+
+pub(crate) fn run(robot: &Path, path: Option<&Path>, asked: &Asked) -> u8 {
+    let code = match (&asked.check, path) {
+        (Some(trajectory), path) => check::run(robot, path, trajectory),
+        (None, Some(path)) => timed(robot, path, asked),
+        (None, None) => Err(UNREADABLE),
+    };
+    code.unwrap_or_else(|code| code)
+}
+
+fn timed(robot: &Path, path: &Path, asked: &Asked) -> Result<u8, u8> {
+    let source = input::description(robot)?;
+    let (manipulator, _) = input::manipulator(&source, Scalar::F64, input::Warnings::Counted)?;
+    let given = input::source(path)?;
+    let (file, mut diagnostics) = file::read(&given, &manipulator, true);
+    let Some(file) = file else { return Err(refused(&given, &diagnostics)) };
+    let job = Job { description: source.name(), manipulator: &manipulator, file: &file, asked };
+    let motion =
+        if manipulator.dof() <= USUAL { job.run::<USUAL>(&mut diagnostics) } else { job.run::<MAX_JOINTS>(&mut diagnostics) }?;
+    diagnostics.sort();
+    let Some(motion) = motion else { return Err(refused(&given, &diagnostics)) };
+    shown(&given, &diagnostics);
+    for (out, text) in [(&asked.csv, &motion.csv), (&asked.json, &motion.json)] {
+        let (Some(out), Some(text)) = (out, text) else { continue };
+        let code = write_other([(robot, "the description"), (path, "the path")], out, text);
+        if code != DONE {
+            return Err(code);
+        }
+    }
+    Ok(terminal::print(&motion.text))
+}
+
+fn shown(source: &Source, diagnostics: &Diagnostics) {
+    if !diagnostics.is_empty() {
+        terminal::diagnose(&diagnostics.render(source, terminal::colour(&std::io::stderr())));
+    }
+}
+
+fn refused(source: &Source, diagnostics: &Diagnostics) -> u8 {
+    shown(source, diagnostics);
+    terminal::error(&input::verdict(source, diagnostics));
+    FAULTY
+}
+
+/// The exit code after the message why the arm of a description cannot be timed.
+fn unfit(description: &str, manipulator: &Manipulator, unfit: &Unfit) -> u8 {
+    terminal::error(&match unfit {
+        Unfit::Massless => format!("{description}: massless: nothing of this arm has mass, so it has no equations of motion"),
+        Unfit::Friction(joint) => format!(
+            "{description}: friction-not-treated: joint `{}` has cubic or Stribeck friction, which a timing does not treat; \
+             describe it by `viscous` and `coulomb` of at least that torque",
+            manipulator.joints[*joint].name
+        ),
+    });
+    FAULTY
+}
+
+/// A path of pieces.
+type Curve<const N: usize> = JointPath<f64, N, Vec<Piece<f64, N>>>;
+
+struct Job<'a> {
+    /// Where the description comes from.
+    description: &'a str,
+    manipulator: &'a Manipulator,
+    file: &'a File,
+    asked: &'a Asked,
+}
+
+impl Job<'_> {
+    /// The motion; `None` where the path has none, after a diagnostic. An exit code where the arm has none, after a message.
+    fn run<const N: usize>(&self, diagnostics: &mut Diagnostics) -> Result<Option<Motion>, u8> {
+        let arm: Arm<N> = with_spinner("deriving", || Arm::new(self.manipulator))
+            .map_err(|of| unfit(self.description, self.manipulator, &of))?;
+        let form = self.file.form.as_ref().expect("a file that is timed has a path");
+        let (pieces, origins): (Vec<Piece<f64, N>>, Vec<curve::Origin>) = curve::pieces(form).into_iter().unzip();
+        let faults = Faults { manipulator: self.manipulator, file: self.file, form, origins: &origins };
+        faults.of_corners(diagnostics);
+        faults.of_positions(&pieces, diagnostics);
+        faults.of_missing_limits(&pieces, diagnostics);
+        if diagnostics.has_errors() {
+            return Ok(None);
+        }
+        let path = match JointPath::new(pieces.clone()) {
+            Ok(path) => path,
+            Err(error) => {
+                diagnostics.push(faults.of_path(&pieces, &error));
+                return Ok(None);
+            }
+        };
+        let limits = self.limits::<N>();
+        let segments = self.asked.segments as usize;
+        let (mut nodes, mut storage) =
+            (vec![Node::empty(); 2 * segments + path.pieces().len()], vec![Segment::empty(); segments + 1]);
+        let ends = Ends { speed: self.file.speed, hold: self.file.hold };
+        let work = Workspace { nodes: &mut nodes, segments: &mut storage };
+        let timing = match with_spinner("timing", || time_optimal(&arm, &path, &limits, ends, self.asked.gap, work)) {
+            Ok(timing) => timing,
+            Err(error) => {
+                diagnostics.push(faults.of_timing(&arm, &path, &error));
+                return Ok(None);
+            }
+        };
+        faults.of_start(&arm, &path, diagnostics);
+        faults.of_gap(&timing, self.asked.gap, diagnostics);
+        let samples = timing.duration().as_secs_f64() / self.asked.period.as_secs_f64();
+        if self.asked.csv.is_some() && samples > result::SAMPLES {
+            terminal::error(&format!(
+                "the motion takes {} s: {samples:.0} samples are more than the {} of a file; choose a longer `--period`",
+                result::short(timing.seconds()),
+                result::SAMPLES
+            ));
+            return Err(UNREADABLE);
+        }
+        Ok(Some(result::motion(self, &arm, &path, &timing)))
+    }
+
+    fn joint(&self, joint: usize) -> &str {
+        self.manipulator.joints.get(joint).map_or("", |joint| &joint.name)
+    }
+
+    fn slides(&self, joint: usize) -> bool {
+        self.manipulator.joints.get(joint).is_some_and(|joint| joint.kind == JointKind::Prismatic)
+    }
+
+    fn limits<const N: usize>(&self) -> timing::Limits<f64, N> {
+        let of = |all: &[f64]| std::array::from_fn(|joint| all.get(joint).copied().unwrap_or(f64::INFINITY));
+        let limits = &self.file.limits;
+        let effort =
+            |side: usize, free: f64| std::array::from_fn(|joint| limits.effort.get(joint).map_or(free, |both| both[side]));
+        timing::Limits::velocity(of(&limits.velocity))
+            .and_then(|all| all.with_acceleration(of(&limits.acceleration)))
+            .and_then(|all| all.with_effort(effort(0, -f64::INFINITY), effort(1, f64::INFINITY)))
+            .expect("the file and the description have positive limits")
+    }
+}

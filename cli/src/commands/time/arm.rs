@@ -1,0 +1,219 @@
+//! An arm as the timing of a path sees it, executed from its description.
+
+use std::cell::RefCell;
+
+use armgen_codegen::exact::Polynomial;
+use armgen_codegen::kinds::{JointKind, ParameterId};
+use armgen_codegen::manipulator::{Manipulator, Placement};
+use armgen_codegen::schedule::{self, Options, Selection};
+use armgen_codegen::{Model, Trig};
+use armgen_evaluate::{program, Program, Workspace};
+use armgen_runtime::timing::{JointFriction, LinkBound, PathDynamics, PathTorques};
+use nalgebra::{Matrix3, SVector, Vector3};
+
+/// Lengths and inertias are sums of few terms, rounded to nearest: this much more bounds them.
+const UPWARDS: f64 = 1.0 + 1e-12;
+
+/// The inverse dynamics without friction, and what a timing needs besides. Joints beyond those of the description weigh nothing.
+pub(super) struct Arm<const N: usize> {
+    dof: usize,
+    inverse_dynamics: Program<f64>,
+    workspace: RefCell<Workspace<f64>>,
+    friction: [JointFriction<f64>; N],
+    links: [LinkBound<f64>; N],
+    gravity: f64,
+}
+
+/// Why an arm cannot be timed.
+pub(super) enum Unfit {
+    /// It has no equations of motion.
+    Massless,
+    /// The friction of this joint, counted from 0, is of a kind that is not treated.
+    Friction(usize),
+}
+
+impl<const N: usize> Arm<N> {
+    /// The arm of a description of at most N joints.
+    pub(super) fn new(manipulator: &Manipulator) -> Result<Arm<N>, Unfit> {
+        if manipulator.is_massless() {
+            return Err(Unfit::Massless);
+        }
+        let value = |p: &Polynomial| p.evaluate(&|ParameterId(i)| manipulator.parameters[i as usize].nominal.clone()).to_f64();
+        let given = |p: &Option<Polynomial>| p.as_ref().map_or(0.0, value);
+        let fades = |torque: &Polynomial| value(torque) != 0.0;
+        if let Some(joint) = manipulator
+            .joints
+            .iter()
+            .position(|joint| given(&joint.cubic) != 0.0 || joint.stribeck.as_ref().is_some_and(|of| fades(&of.torque)))
+        {
+            return Err(Unfit::Friction(joint));
+        }
+        let friction = std::array::from_fn(|i| {
+            let Some(joint) = manipulator.joints.get(i) else { return JointFriction::default() };
+            let motor = joint.motor.as_ref().map_or(0.0, |motor| value(&motor.ratio).powi(2) * given(&motor.viscous));
+            JointFriction {
+                viscous: given(&joint.viscous) + motor,
+                coulomb: given(&joint.coulomb),
+                offset: given(&joint.offset),
+                load: joint.load.as_ref().map_or(0.0, |load| load.to_f64()),
+            }
+        });
+        // Friction depends on the sign of the rates, which is known on every part of a path: it is added there.
+        let mut bare = manipulator.clone();
+        bare.gravity_is_argument = false;
+        for joint in &mut bare.joints {
+            (joint.viscous, joint.coulomb, joint.offset, joint.load) = (None, None, None, None);
+            (joint.cubic, joint.stribeck) = (None, None);
+            if let Some(motor) = &mut joint.motor {
+                motor.viscous = None;
+            }
+        }
+        let functions = Selection::named(["inverse_dynamics"]).expect("a function of the catalogue");
+        let module = schedule::module(&Model::new(bare), &Options { trig: Trig::Fast, functions, ..Options::default() });
+        let inverse_dynamics: Program<f64> = program(&module, &module.functions[0]);
+        let workspace = RefCell::new(inverse_dynamics.workspace());
+        let gravity = Vector3::from(std::array::from_fn(|i| value(&manipulator.gravity[i]))).norm() * UPWARDS;
+        let links = links(manipulator, &value);
+        Ok(Arm { dof: manipulator.dof(), inverse_dynamics, workspace, friction, links, gravity })
+    }
+
+    /// tau with friction of joints that move, or begin to move, in the directions of `forwards`.
+    pub(super) fn torque(
+        &self,
+        q: &SVector<f64, N>,
+        dq: &SVector<f64, N>,
+        ddq: &SVector<f64, N>,
+        forwards: &SVector<f64, N>,
+    ) -> SVector<f64, N> {
+        let (gravity, mut tau) = (self.gravity_torque(q), self.bare(q, dq, ddq));
+        for (i, of) in self.friction.iter().enumerate() {
+            let sign = if forwards[i] == 0.0 { 0.0 } else { forwards[i].signum() };
+            tau[i] += of.viscous * dq[i] + sign * (of.coulomb + of.load * gravity[i].abs()) + of.offset;
+        }
+        tau
+    }
+
+    /// The torque of a joint that holds the arm at rest, without friction, and by how much friction at rest may lower it.
+    pub(super) fn holding(&self, q: &SVector<f64, N>, joint: usize) -> (f64, f64) {
+        let gravity = self.gravity_torque(q)[joint];
+        let of = &self.friction[joint];
+        (gravity + of.offset, of.coulomb + of.load * gravity.abs())
+    }
+
+    fn gravity_torque(&self, q: &SVector<f64, N>) -> SVector<f64, N> {
+        self.bare(q, &SVector::zeros(), &SVector::zeros())
+    }
+
+    fn bare(&self, q: &SVector<f64, N>, dq: &SVector<f64, N>, ddq: &SVector<f64, N>) -> SVector<f64, N> {
+        let mut tau = SVector::<f64, N>::zeros();
+        let n = self.dof;
+        let arguments = [&q.as_slice()[..n], &dq.as_slice()[..n], &ddq.as_slice()[..n]];
+        let result = &mut tau.as_mut_slice()[..n];
+        self.inverse_dynamics.run(&arguments, result, &mut self.workspace.borrow_mut()).expect("the lengths of this arm");
+        tau
+    }
+}
+
+/// A frame in numbers.
+fn frame(placement: &Placement, value: &dyn Fn(&Polynomial) -> f64) -> (Matrix3<f64>, Vector3<f64>) {
+    let rotation = Matrix3::from_fn(|i, j| placement.rotation[i][j].to_f64());
+    (rotation, Vector3::from_fn(|i, _| value(&placement.translation[i])))
+}
+
+/// Mass, first moment and moment of inertia about the origin of a joint.
+#[derive(Clone, Copy, Default)]
+struct Sum {
+    mass: f64,
+    first: Vector3<f64>,
+    inertia: Matrix3<f64>,
+}
+
+impl Sum {
+    fn add(&mut self, mass: f64, com: Vector3<f64>, inertia: Matrix3<f64>) {
+        self.mass += mass;
+        self.first += com * mass;
+        self.inertia += inertia + (Matrix3::identity() * com.norm_squared() - com * com.transpose()) * mass;
+    }
+}
+
+fn links<const N: usize>(manipulator: &Manipulator, value: &dyn Fn(&Polynomial) -> f64) -> [LinkBound<f64>; N] {
+    let joints = &manipulator.joints;
+    let mut sums = [Sum::default(); N];
+    for (i, joint) in joints.iter().enumerate() {
+        let (rotation, origin) = frame(&joint.link_frame, value);
+        let payload = manipulator.payload.iter().filter(|_| manipulator.tip.0 as usize == i);
+        let bodies = joint.link.iter().map(|body| (body, None)).chain(payload.map(|body| (body, Some(&manipulator.tool.frame))));
+        for (placed, tool) in bodies {
+            let body = &placed.body;
+            let [xx, xy, yy, xz, yz, zz] = std::array::from_fn(|k| value(&body.inertia[k]));
+            let mut com = Vector3::from_fn(|k, _| value(&body.com[k]));
+            let mut inertia = Matrix3::new(xx, xy, xz, xy, yy, yz, xz, yz, zz);
+            if let Some(tool) = tool {
+                let (turn, place) = frame(tool, value);
+                com = turn * com + place;
+                inertia = turn * inertia * turn.transpose();
+            }
+            sums[i].add(value(&body.mass), rotation * com + origin, rotation * inertia * rotation.transpose());
+        }
+        if let (Some(motor), Some(parent)) = (&joint.motor, joint.parent) {
+            let p = parent.0 as usize;
+            let (rotation, origin) = frame(&joints[p].link_frame, value);
+            let place = Vector3::from_fn(|k, _| value(&motor.position[k]));
+            let axis = rotation * Vector3::from_fn(|k, _| motor.axis[k].to_f64());
+            let spin = motor.inertia.as_ref().map_or(0.0, value);
+            sums[p].add(value(&motor.mass), rotation * place + origin, axis * axis.transpose() * spin);
+        }
+    }
+    std::array::from_fn(|i| {
+        let Some(joint) = joints.get(i) else {
+            return LinkBound {
+                parent: None,
+                slides: false,
+                distance: 0.0,
+                mass: 0.0,
+                first_moment: 0.0,
+                inertia: 0.0,
+                coupling: 0.0,
+                reflected: 0.0,
+            };
+        };
+        let (ratio, spin) =
+            joint.motor.as_ref().map_or((0.0, 0.0), |motor| (value(&motor.ratio), motor.inertia.as_ref().map_or(0.0, value)));
+        LinkBound {
+            parent: joint.parent.map(|parent| parent.0 as usize),
+            slides: joint.kind == JointKind::Prismatic,
+            distance: frame(&joint.placement, value).1.norm() * UPWARDS,
+            mass: sums[i].mass * UPWARDS,
+            first_moment: sums[i].first.norm() * UPWARDS,
+            // Frobenius' norm is at least the largest eigenvalue.
+            inertia: sums[i].inertia.norm() * UPWARDS,
+            coupling: (ratio * spin).abs() * UPWARDS,
+            reflected: (ratio * ratio * spin + joint.armature.as_ref().map_or(0.0, value)) * UPWARDS,
+        }
+    })
+}
+
+impl<const N: usize> PathDynamics<N> for Arm<N> {
+    type Real = f64;
+
+    fn path_dynamics(&self, q: &SVector<f64, N>, slope: &SVector<f64, N>, curvature: &SVector<f64, N>) -> PathTorques<f64, N> {
+        let gravity = self.gravity_torque(q);
+        PathTorques {
+            inertial: self.bare(q, &SVector::zeros(), slope) - gravity,
+            velocity: self.bare(q, slope, curvature) - gravity,
+            gravity,
+        }
+    }
+
+    fn joint_friction(&self) -> &[JointFriction<f64>; N] {
+        &self.friction
+    }
+
+    fn link_bounds(&self) -> &[LinkBound<f64>; N] {
+        &self.links
+    }
+
+    fn gravity_length(&self) -> f64 {
+        self.gravity
+    }
+}
