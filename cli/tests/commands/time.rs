@@ -390,6 +390,12 @@ fn the_columns_define_the_spline() {
     assert!(report.contains("the quintics that q, dq and ddq define"), "{report}");
     let (_, error) = checked("quintic-fast", &robot, Some(&limits(79.999)), &text, 1);
     assert!(error.contains("at t = 2 s the speed of joint `slide` is 80 m/s"), "{error}");
+    // A cubic and its derivative: q = t³, acceleration 6 t.
+    let text = csv("t,q1,dq1", [1.0f64, 2.0].map(|t| vec![t, t.powi(3), 3.0 * t * t]));
+    let both = |a: f64| format!("limits: {{velocity: [12.001], acceleration: [{a}]}}\n");
+    checked("cubic", &robot, Some(&both(12.001)), &text, 0);
+    let (_, error) = checked("cubic-fast", &robot, Some(&both(11.999)), &text, 1);
+    assert!(error.contains("at t = 2 s the acceleration of joint `slide` is 12 m/s²"), "{error}");
     // The natural spline through (0, 0), (1, 1), (2, 0): q = 1.5 t - 0.5 t³, largest at t = 1.
     let text = csv("t,q1", [vec![0.0, 0.0], vec![1.0, 1.0], vec![2.0, 0.0]]);
     let robot = robot.replace("position: [-5, 32]", "position: [-5, 0.999]");
