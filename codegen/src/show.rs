@@ -8,7 +8,7 @@
 //! b11 = 10*cos(q2) + 10763/500
 //! ```
 //!
-//! The other forms are numbered steps, each of which uses only earlier ones. They write out the plain recursion over the links,
+//! The other forms are numbered steps; each step uses only earlier steps. They write out the plain recursion over the links,
 //! and the recursion with the savings of the emitted function. By default a closed form that fits a table is shown, else the form
 //! with the fewest characters. No term is ever left out.
 //!

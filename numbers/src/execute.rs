@@ -13,7 +13,8 @@ const LANES: usize = 8;
 const LARGE: usize = 8;
 const SMALL: usize = 2;
 
-/// Places that take more bytes than this in large blocks do not fit into a processor's second cache. Small blocks are faster then.
+/// Places that take more bytes than this in large blocks do not fit into a processor's second cache. Small blocks are faster
+/// then.
 const CACHE: usize = 256 << 10;
 
 /// The numbers in the places of a program while it runs.
@@ -146,7 +147,8 @@ pub struct Run<'a, T> {
     states: usize,
 }
 
-// Everything here is inlined into the function that uses the processor's own instructions. Code that is not inlined cannot use them.
+// Everything here is inlined into the function that uses the processor's own instructions. Code that is not inlined cannot use
+// them.
 impl<T: Scalar> Run<'_, T> {
     /// All states, in blocks.
     #[inline(always)]

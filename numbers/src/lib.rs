@@ -6,13 +6,14 @@
 //! It takes blocks of 64 states and performs each operation on the whole block before the next operation.
 //! A single state runs the same program with one number in each place.
 //!
-//! Every operation rounds by itself, in the order of the function. The bits therefore equal those of compiled code, for any number of states
-//! and on any processor. Sines, cosines and the exponential are the compiled texts of `armgen-elementary`, or `libm`.
+//! Every operation rounds by itself, in the order of the function. The bits therefore equal those of compiled code, for any
+//! number of states and on any processor. Sines, cosines and the exponential are the compiled texts of `armgen-elementary`, or
+//! `libm`.
 //!
 //! The compiled blocks of `armgen-inverse-kinematics` find all solutions of inverse kinematics ([`postures`]).
 //!
-//! No state causes a panic: infinities and NaN pass through all operations by the rules of IEEE 754. [`Program::run`] allocates nothing; the
-//! caller prepares its [`Workspace`].
+//! No state causes a panic: infinities and NaN pass through all operations by the rules of IEEE 754. [`Program::run`] allocates
+//! nothing; the caller prepares its [`Workspace`].
 //!
 //! ```
 //! use armgen_numbers::{Argument, Function, Input, Operand, Operation, Operator, Output, Program, Result, Sines};

@@ -1,7 +1,8 @@
 //! All solutions of inverse kinematics: a construction as plain data, and the calls of its compiled blocks.
 //!
-//! The blocks of `armgen-inverse-kinematics` run in its order: the loop of the arm at a pose, the construction, the refinement of its solutions,
-//! the arm's own order, the verdict. An emitted module makes the same calls with the same constants, so the bits are equal.
+//! The blocks of `armgen-inverse-kinematics` run in its order: the loop of the arm at a pose, the construction, the refinement of
+//! its solutions, the arm's own order, the verdict. An emitted module makes the same calls with the same constants, so the bits
+//! are equal.
 
 use std::fmt;
 

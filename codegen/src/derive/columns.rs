@@ -12,9 +12,11 @@
 //! E is kept relative to a rotating frame, E + n × Ω with Ω the angular velocity of the link that E is relative to: relative to link i
 //! itself the term dz_i/dt · n is gone. Moved by d it gains d' × f - d × (Ω × f), d' the rate of d in that frame.
 //!
-//! From one link to the next there are three ways: shift the moments to the new origin in the new axes (way 0) or before turning, in
-//! the old axes (way 1), which saves turning a force that nothing needs any more; or keep them about the old point (way 2), which pays where
-//! only one component is asked for on the way.
+//! There are three ways from one link to the next:
+//!
+//! - way 0 shifts the moments to the new origin in the new axes;
+//! - way 1 shifts them in the old axes, before turning, and so need not turn a force that is not used again;
+//! - way 2 keeps them about the old point, which saves operations if only one component is used on the way.
 
 use std::collections::BTreeMap;
 

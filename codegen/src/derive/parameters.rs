@@ -1,4 +1,4 @@
-//! The parameter vector pi: what the regressor's columns are, and what each entry of the model is in terms of it.
+//! The parameter vector pi: the columns of the regressor, and each entry of the model as a function of pi.
 
 use std::cell::RefCell;
 
@@ -57,8 +57,8 @@ pub enum Inertial {
     Iyz,
     /// Izz.
     Izz,
-    /// Ixx of a planar body: one without extent along z, Izz = Ixx + Iyy. That is what
-    /// [`GroupingConvention::NoSecondMomentAlongAxis`](super::arm::GroupingConvention) leaves.
+    /// Ixx of a planar body, which has no extent along z: Izz = Ixx + Iyy. The convention
+    /// [`GroupingConvention::NoSecondMomentAlongAxis`](super::arm::GroupingConvention) leaves such bodies.
     PlanarIxx,
     /// Iyy of a planar body.
     PlanarIyy,
@@ -103,7 +103,7 @@ impl Inertial {
         }
     }
 
-    /// What it is, with its unit.
+    /// Its meaning, with its unit.
     fn meaning(self) -> &'static str {
         match self {
             Inertial::M => "mass, kg",
@@ -295,11 +295,11 @@ pub struct Parameter {
     pub name: String,
     /// Its value in the description.
     pub nominal: Number,
-    /// What it is, for people.
+    /// Its meaning, for people.
     pub meaning: String,
 }
 
-/// What the entries stand for.
+/// The meaning of the entries.
 #[derive(Clone, Debug)]
 pub enum ParameterKind {
     /// The standard parameters themselves.
@@ -320,7 +320,7 @@ pub enum View<'a> {
     Symbolic,
     /// The entries of the parameter vector symbols, everything else a number.
     Vector(&'a ParameterVector),
-    /// The entries of the parameter vector zero, everything else a number: what remains is the known part.
+    /// The entries of the parameter vector zero, everything else a number: the known part remains.
     VectorZero(&'a ParameterVector),
 }
 
@@ -448,7 +448,7 @@ impl ParameterVector {
 }
 
 impl StandardParameter {
-    /// What it is, with unit and frame.
+    /// Its meaning, with unit and frame.
     pub fn meaning(self, manipulator: &Manipulator) -> String {
         let name = |i: u16| &manipulator.joints[usize::from(i)].name;
         match self {

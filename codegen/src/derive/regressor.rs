@@ -50,7 +50,7 @@ pub fn derivative_by_parameter(pool: &mut Pool, exprs: &[ExprId], k: u16) -> Vec
     pool.differentiate(exprs, &mut |_, symbol| if symbol == Symbol::Parameter(k) { ExprId::ONE } else { ExprId::ZERO })
 }
 
-/// Columns of standard parameters, those of a link in its link frame.
+/// Columns of standard parameters, which refer to the frame of their link.
 pub fn standard_columns(
     pool: &mut Pool,
     arm: &Arm,

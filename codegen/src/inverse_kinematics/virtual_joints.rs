@@ -1,9 +1,9 @@
 //! A pose for an arm with fewer than six joints: virtual joints beyond the last one make it an arm of a class, and have to come out 0.
 //!
-//! Which virtual joints serve is found by trial, simple ones first: three turns and three slides, a wrist through a point that the pose fixes, a
-//! turn across the last axis. They serve where the completed arm is regular at a general posture of the arm itself, with the virtual
-//! joints at 0: then its solutions there are isolated and simple, and a construction lists all of them. The Jacobian says so, of full rank at
-//! a random posture of a prime field.
+//! Virtual joints are found by trial, simple ones first: three turns and three slides, a wrist through a point that the pose
+//! fixes, a turn across the last axis. The completed arm must be regular at a general posture of the arm itself, with the virtual
+//! joints at 0. Then its solutions there are isolated and simple, and a construction lists all of them. The test is a Jacobian of
+//! full rank at a random posture of a prime field.
 
 use super::chain::{Chain, Virtual};
 use super::classes;

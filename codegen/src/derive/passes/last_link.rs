@@ -64,7 +64,7 @@ pub(super) fn rotate(pool: &mut Pool, arm: &mut Arm, plan: &mut Plan) {
     }
 }
 
-/// Turns the axes of the last link by the angle that the field knows, if there is one.
+/// Turns the axes of the last link by the angle of the field, if it has such an angle.
 pub(crate) fn rotate_last_link(pool: &mut Pool, arm: &mut Arm) {
     let Some((turn, i)) = pool.field().turn().cloned().zip(last(arm)) else { return };
     let Some(quarters) = quarters(pool, arm.joints[i].sine, i as u16) else { return };
