@@ -115,7 +115,7 @@ pub fn of(manipulator: &Manipulator) -> Result<InverseKinematics, String> {
 fn redundant(chain: &Chain, target: Target, length: &Number, given: Option<GivenBeside>) -> Result<InverseKinematics, String> {
     let joints = chain.joints.len();
     let with = |joint: usize| {
-        // The turn about the end effector's z axis is behind a last joint that is given, a slide along the last axis before it.
+        // The turn about the end effector's z axis follows a given last joint. A slide along the last axis precedes it.
         let (rest, given) = if target == Target::Pointing {
             completed(chain.clone(), target)?.without(joint)
         } else {

@@ -1,7 +1,7 @@
 //! The arm as the derivations see it: joint frames, bodies, rotors, friction, all as expressions of one pool.
 //!
-//! All recursions run in joint frames, whose z axis is the joint axis, whatever convention the description uses: a vector then turns
-//! by Rz(q) alone, and the parameters of a body fall into those that joint i feels and those that it hands on.
+//! All recursions run in joint frames, whose z axis is the joint axis, whatever convention the description uses. A vector then
+//! turns by Rz(q) alone, and joint i either feels a parameter of a body or passes it to the link before.
 //!
 //! ```text
 //! R_i = fixed_i · Rz(theta_i),   fixed_i = Rx(alpha) for Denavit-Hartenberg rows,   theta_i = q_i + offset
@@ -243,7 +243,7 @@ impl Joint {
 }
 
 impl Arm {
-    /// The arm in a pool, its quantities as `view` says.
+    /// The arm in a pool. `view` decides how parameters enter.
     pub fn new(pool: &mut Pool, manipulator: &Manipulator, view: View<'_>) -> Arm {
         let joints = (0..manipulator.joints.len()).map(|i| joint(pool, manipulator, view, i)).collect();
         let gravity = if manipulator.gravity_is_argument {

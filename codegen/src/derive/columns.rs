@@ -1,8 +1,8 @@
 //! How the wrench of a column reaches the joints between it and the base.
 //!
 //! Column j of B is what each ancestor i of joint j feels of ∂x/∂q_j over all that joint j carries: a force f and a moment n about a
-//! point, handed from link to link. C hands on the wrench (F, N) of the rate of ∂x/∂q_j and the moment E as well (`coriolis.rs`). With
-//! d from o_i to the point that the moments are about,
+//! point, passed from link to link. C passes on the wrench (F, N) of the rate of ∂x/∂q_j and the moment E as well
+//! (`coriolis.rs`). With d from o_i to the point that the moments are about,
 //!
 //! ```text
 //! B_ij = z_i · (n + d × f),   C_ij = z_i · (N + d × F),   C_ji = dz_i/dt · n + z_i · E + d(z_i × d)/dt · f      (joint i revolute)

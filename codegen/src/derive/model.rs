@@ -29,7 +29,7 @@ pub struct Model {
     pub field: Field,
     /// The parameter vector that its `regressor` chooses.
     pub parameters: ParameterVector,
-    /// Its base parameters, found when first asked for.
+    /// Its base parameters, computed at the first use.
     base: OnceLock<ParameterVector>,
 }
 

@@ -284,7 +284,7 @@ fn stays_short(body: &Body) -> bool {
 pub struct ParameterVector {
     /// One entry per column.
     pub entries: Vec<Parameter>,
-    /// What an entry stands for.
+    /// The kind of its entries.
     pub kind: ParameterKind,
 }
 
@@ -330,7 +330,7 @@ pub fn nominal(manipulator: &Manipulator, value: &Polynomial) -> Number {
 }
 
 /// a, alpha, d and theta of a Denavit-Hartenberg row at the nominal values of all names, without `base`. Its last two elements before the motion are
-/// Rx(alpha) Tx(a) and Rz(theta) Tz(d) in the modified convention; in the standard one the first of these stands last after it.
+/// Rx(alpha) Tx(a) and Rz(theta) Tz(d) in the modified convention. In the standard convention Tx(a) Rx(alpha) follows the motion.
 pub fn denavit_hartenberg(manipulator: &Manipulator, row: &Row, modified: bool) -> Option<[f64; 4]> {
     let before = &row.before.elements;
     let turn = before.last()?;

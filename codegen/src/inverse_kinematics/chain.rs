@@ -66,7 +66,7 @@ pub(super) struct Virtual {
 pub struct Given {
     /// Its number in the arm, from 0.
     pub joint: usize,
-    /// The place in the loop of the link that it moves, if it stands between two other joints; else it is at an end of the arm.
+    /// The place in the loop of the link that it moves, if it is between two other joints; else it is at an end of the arm.
     pub place: Option<usize>,
     /// Whether it slides.
     pub prismatic: bool,
@@ -229,7 +229,7 @@ impl Chain {
             if !joint.prismatic && !along {
                 return false;
             }
-            // At q = 0 a revolute joint that turns about the axis leaves the directions of those behind it relative to the axis.
+            // A revolute joint about the axis does not change directions of later axes relative to the axis, so q = 0 serves.
             at = compose(&at, &turn_about_z(&joint.theta));
             if let Some(normal) = self.normals.get(i) {
                 at = compose(&at, &normal.frame(false));
@@ -246,7 +246,7 @@ impl Chain {
         let open = order.iter().position(|joint| *joint == last).unwrap_or(n - 1);
         let left = |joint: &Joint| if joint.prismatic { turn_about_z(&joint.theta) } else { slide_along_z(&joint.d) };
         let normal = |joint: usize| if backward { joint - 1 } else { joint };
-        // The given joint stands behind joint `left_out` - 1 of those that are left, and before joint `left_out`.
+        // The given joint is between the remaining joints `left_out` - 1 and `left_out`.
         let between = self.between.as_ref().zip(self.left_out);
         let place = between
             .and_then(|(_, given)| order.iter().enumerate().position(|(p, joint)| p != open && normal(*joint) + 1 == given));

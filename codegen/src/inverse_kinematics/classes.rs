@@ -15,9 +15,9 @@ pub struct Regional {
     pub text: &'static str,
     /// Closed forms throughout; others are polished.
     pub closed: bool,
-    /// At most so many solutions.
+    /// The largest number of solutions.
     pub most: usize,
-    /// What its signs choose between, from bit 0 on: none for the four roots of an equation.
+    /// The alternatives of its signs, from bit 0 on; empty for the four roots of an equation.
     choices: &'static [(Pair, Sign)],
     /// What makes it hold, with `{1}`, `{2}`, `{3}` for the joints.
     because: &'static str,

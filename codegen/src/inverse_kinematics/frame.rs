@@ -83,7 +83,7 @@ pub(super) fn is_right(f: &Frame) -> bool {
 /// root that has no form.
 pub(super) fn turns_beside_x(f: &Frame) -> Option<[[Number; 2]; 2]> {
     let none = || [Number::one(), Number::zero()];
-    // What is left where one of the turns is known: the first column, or the first row.
+    // The rest if one of the turns is known: the first column, or the first row.
     let column = |f: &Frame| [f[0][0].clone(), f[1][0].clone()];
     let row = |f: &Frame| [f[0][0].clone(), -&f[0][1]];
     if is_zero(&f[2][0]) {

@@ -88,7 +88,7 @@ fn cross(field: &Field, p: [Element; 3], z: [Element; 3]) -> [Element; 3] {
     [minor(1, 2), minor(2, 0), minor(0, 1)]
 }
 
-/// A frame behind Rz Tz of (c, s, d) and a link.
+/// A frame after Rz Tz of (c, s, d) and a link.
 fn stepped(
     field: &Field,
     at: &[[Element; 4]; 3],

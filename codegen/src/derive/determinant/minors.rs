@@ -40,7 +40,7 @@ pub struct Minors {
 pub struct Product {
     /// Its constant factor.
     pub coefficient: Number,
-    /// Its other factors; a power stands as often as it says.
+    /// Its other factors; a factor of a power occurs repeatedly.
     pub factors: Vec<NormalForm>,
 }
 

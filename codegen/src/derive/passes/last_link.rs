@@ -21,7 +21,7 @@ use crate::ring::matrix::Matrix;
 use crate::ring::turn::Turn;
 use crate::ring::{AngleSum, ExprId, Pool, Symbol};
 
-/// Where the joint angle stands, in quarter turns after the joint variable: 0 for sin(theta) = sin(q), 1 for sin(theta) = cos(q), and so on.
+/// The joint angle in quarter turns after the joint variable: 0 for sin(theta) = sin(q), 1 for sin(theta) = cos(q), and so on.
 fn quarters(pool: &mut Pool, sine: ExprId, joint: u16) -> Option<usize> {
     let (s, c) = (pool.symbol(Symbol::Sine(joint)), pool.symbol(Symbol::Cosine(joint)));
     [s, c, -s, -c].iter().position(|&candidate| candidate == sine)

@@ -83,7 +83,7 @@ pub(super) fn parallel_axes(pool: &mut Pool, arm: &mut Arm, plan: &mut Plan) {
                 orient(pool, arm, &run, way - 1, sums);
             }
         }
-        // In a tree the joints of a run need not be consecutive; where they are, the search goes on behind the last.
+        // In a tree the joints of a run need not be consecutive. If they are, the search continues after the last.
         first = if run.iter().enumerate().all(|(k, &i)| i == first + k) { last + 1 } else { first + 1 };
     }
 }

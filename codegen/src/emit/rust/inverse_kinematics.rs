@@ -14,7 +14,7 @@ use crate::kinds::{JointKind, Scalar};
 use crate::manipulator::{Joint, Manipulator};
 use crate::program::Module;
 
-/// The module's text; where the arm has no construction, a comment that says why.
+/// The module's text. For an arm without a construction it is a comment with the reason.
 pub fn print_inverse_kinematics(
     manipulator: &Manipulator,
     scalar: Scalar,
@@ -266,7 +266,7 @@ fn constants(joints: &[Joint], scalar: Scalar, found: &InverseKinematics) -> Tok
     }
 }
 
-/// The documentation of `BRANCHES`: what each bit says; `way`: what holds the constants of the loop, in words.
+/// The documentation of `BRANCHES`: the meaning of each bit. `way` names the item with the constants of the loop, in words.
 pub(in crate::emit) fn meanings(found: &InverseKinematics, way: &str) -> Vec<String> {
     if found.choices.is_empty() {
         return vec![
