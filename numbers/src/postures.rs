@@ -251,8 +251,8 @@ impl<T: Solved> Solver<T> {
 
     /// All postures q with direct_kinematics(q) = T, in the rows of the arm's target.
     ///
-    /// - `pose`: T = (R p; 0 1) by rows, of the end effector in the base frame, m. An entry that is not finite gives the verdict `Invalid`, as does
-    ///   an R that is no rotation, unless the target is a position. The last row is not used otherwise.
+    /// - `pose`: T = (R p; 0 1) by rows, of the end effector in the base frame, m. An entry that is not finite gives the verdict
+    ///   `Invalid`, as does an R that is no rotation, unless the target is a position. The last row is not used otherwise.
     /// - `redundancy`: the value of [`InverseKinematics::redundancy`], rad or m, for an arm that has it.
     ///
     /// Errors: a missing redundancy, or a redundancy for an arm without it.
