@@ -15,7 +15,7 @@ use armgen_codegen::program::{self as steps, Module};
 use armgen_codegen::ring::Symbol;
 use armgen_codegen::Trig;
 use armgen_numbers as numbers;
-pub use armgen_numbers::postures::{Postures, Solver, Unfit, Verdict};
+pub use armgen_numbers::postures::{Postures, Redundancy, Solver, Unfit, Verdict};
 use armgen_numbers::{Angle, Function, Input, Operand, Operation, Operator, Output, Sines};
 pub use armgen_numbers::{Mismatch, Program, Workspace};
 pub use postures::{inverse_kinematics, solver};
