@@ -9,6 +9,8 @@
 //!
 //! All solutions of inverse kinematics are found by the compiled blocks of `armgen-inverse-kinematics` ([`postures`]).
 //!
+//! [`Program::over`] executes the same program over another [`Arithmetic`], as a checker does.
+//!
 //! No state makes it panic: what is infinite or not a number goes through all operations as IEEE 754 says. [`Program::run`] allocates
 //! nothing; its [`Workspace`] is made before.
 //!
@@ -32,6 +34,7 @@
 //! assert_eq!(torque[2], 9.81 * libm::sin(1.0));
 //! ```
 
+mod arithmetic;
 mod execute;
 mod function;
 pub mod postures;
@@ -40,6 +43,7 @@ mod scalar;
 #[cfg(test)]
 mod tests;
 
+pub use arithmetic::Arithmetic;
 pub use execute::{Compiled, Mismatch, Workspace};
 pub use function::{Angle, Argument, Function, Input, Operand, Operation, Operator, Output, Result, Sines};
 pub use program::{Invalid, Program};

@@ -78,6 +78,10 @@ class InternalError(RuntimeError):
         )
 
 
+class VerificationError(RuntimeError):
+    """What the checker has looked at is not the equations: the first wrong entry, and how it is wrong."""
+
+
 def _structures_of_catalogue() -> dict[str, Any]:
     structures = {}
     for name, _, _, parts, _ in _native.catalogue_of_functions():
@@ -435,6 +439,21 @@ class Robot:
             "--ik": ik,
         }
         return self._arm.generate(options + [flag for flag, wanted in flags.items() if wanted])
+
+    def verify(self, text: str | None = None, language: str = "rust") -> dict[str, dict[str, Any]]:
+        """Verifies the functions as they are executed here; of a text, the emitted module in a language, as `armgen verify` does.
+
+        The checker derives the equations in another way and compares in exact arithmetic, at random points. For each function it returns
+        the numbers of `points` in prime fields and of `rational` points, and `log2_odds`, those that a wrong function passes.
+
+        Raises VerificationError with the first wrong entry. Takes seconds, of long arms minutes.
+        """
+        if text is None:
+            self.prepare()
+        fault, functions = self._arm.verified(text, language)
+        if fault is not None:
+            raise VerificationError(fault)
+        return {name: {"points": points, "rational": rational, "log2_odds": odds} for name, points, rational, odds in functions}
 
     def __getattr__(self, name: str) -> Any:
         own = self.__dict__.get("name")

@@ -56,6 +56,10 @@ impl Derived {
         Derived { cost: Cost::of(function), method: function.method, parts, program, idle: Mutex::default() }
     }
 
+    pub(crate) fn program(&self) -> &Program<f64> {
+        &self.program
+    }
+
     fn with_room<R>(&self, work: impl FnOnce(&mut Room) -> R) -> R {
         let idle = || self.idle.lock().unwrap_or_else(PoisonError::into_inner);
         let left = idle().pop();

@@ -7,6 +7,7 @@ use std::sync::{Arc, OnceLock};
 use armgen_codegen::catalogue::{self, Quantity};
 use armgen_codegen::derive::parameters::nominal;
 use armgen_codegen::diagnostic::{AnyCode, Diagnostic, Diagnostics, Severity};
+use armgen_codegen::emit::Language;
 use armgen_codegen::exact::{Number, Polynomial};
 use armgen_codegen::kinds::JointKind;
 use armgen_codegen::manipulator::Manipulator;
@@ -15,6 +16,8 @@ use armgen_codegen::source::Source;
 use armgen_codegen::validate::{self, Places};
 use armgen_codegen::{Model, Scalar, Trig};
 use armgen_evaluate::{Redundancy, Solver};
+use armgen_verify::reader::ModuleText;
+use armgen_verify::report::FunctionReport;
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyTuple};
@@ -222,6 +225,34 @@ impl Arm {
         guarded(py, || postures::redundancy_of(py, &self.robot, &q))
     }
 
+    /// What the checker finds of a module, or of the functions as they are executed here: the first fault, and of each function its name, numbers of
+    /// points in prime fields and of rational points, and log2 of the odds of a miss.
+    fn verified(&self, py: Python<'_>, text: Option<&str>, language: &str) -> PyResult<Verified> {
+        let Some(language) = Language::ALL.into_iter().find(|known| known.name() == language) else {
+            let known = Language::ALL.map(Language::name).join("`, `");
+            return Err(PyValueError::new_err(format!("language: one of `{known}`, not `{language}`")));
+        };
+        let robot = &*self.robot;
+        let report = guarded(py, || {
+            Ok(py.detach(|| match text {
+                Some(text) => Ok(armgen_certify::verify(&robot.source, ModuleText { language, text }, None)),
+                None => {
+                    let derived = (0..robot.functions.len()).map(|index| robot.derived(index));
+                    let derived = derived.collect::<Result<Vec<_>, _>>()?;
+                    let programs: Vec<_> = derived.into_iter().map(Derived::program).collect();
+                    Ok(armgen_certify::verify_executed(&robot.source, &programs))
+                }
+            }))
+        })?;
+        let report = report.map_err(|fault: Box<Diagnostic>| refused_for(py, &robot.source, *fault))?;
+        let fault = match report.first_fault() {
+            None if report.functions.is_empty() => Some("there is no function".to_owned()),
+            fault => fault,
+        };
+        let of = |one: &FunctionReport| (one.name.clone(), one.points, one.exact_points, one.log2_odds);
+        Ok((fault, report.functions.iter().map(of).collect()))
+    }
+
     /// Derives functions at the same time; all that the arm has if none is named.
     fn prepare(&self, py: Python<'_>, names: Vec<String>) -> PyResult<()> {
         let robot = &*self.robot;
@@ -256,6 +287,9 @@ impl Arm {
         done.map_err(|fault: Box<Diagnostic>| refused_for(py, &robot.source, *fault))
     }
 }
+
+/// The first fault that the checker finds, and the functions that it has looked at.
+type Verified = (Option<String>, Vec<(String, usize, usize, f64)>);
 
 fn table(entries: &[catalogue::Parameter]) -> Parameters {
     entries.iter().map(|parameter| (parameter.name.clone(), parameter.nominal.to_f64())).unzip()

@@ -29,6 +29,7 @@ nearest: NDArray[np.float64] | None = postures.nearest_to([0.0] * robot.dof)
 are_all: bool = postures.verdict == "complete" and len(postures) == len(postures.branch_names)
 lists: list[armgen.Postures] = robot.inverse_kinematics(position=np.zeros((5, 3)), rotation=np.eye(3), threads=0)
 given: str | None = robot.redundancy
+odds: float = robot.verify()["gravity"]["log2_odds"]
 robot.page("robot.html")
 robot.prepare("gravity")
 
