@@ -11,6 +11,10 @@
 //! # }
 //! ```
 
+// The unit tests of the checker take this file in, and execute nothing.
+#[cfg(not(test))]
+mod executed;
+
 use armgen_codegen::diagnostic::{Colour, Diagnostics};
 use armgen_codegen::emit::c::print_solver;
 use armgen_codegen::emit::rust::print_inverse_kinematics;
@@ -29,6 +33,9 @@ use armgen_verify::inverse_kinematics::{self, Proposal, Values};
 use armgen_verify::reader::{Module, ModuleText};
 use armgen_verify::report::Report;
 use armgen_verify::{bounds, companion, hash, verify_with};
+
+#[cfg(not(test))]
+pub use executed::verify_executed;
 
 /// Verifies the text of a module against the text of its description.
 ///

@@ -15,9 +15,9 @@ use armgen_codegen::program::{self as steps, Module};
 use armgen_codegen::ring::Symbol;
 use armgen_codegen::Trig;
 use armgen_numbers as numbers;
-pub use armgen_numbers::postures::{Postures, Solver, Unfit, Verdict};
-use armgen_numbers::{Angle, Function, Input, Operand, Operation, Operator, Output, Sines};
-pub use armgen_numbers::{Mismatch, Program, Workspace};
+pub use armgen_numbers::postures::{Postures, Redundancy, Solver, Unfit, Verdict};
+pub use armgen_numbers::{Angle, Arithmetic, Input, Mismatch, Operator, Program, Workspace};
+use armgen_numbers::{Function, Operand, Operation, Output, Sines};
 pub use postures::{inverse_kinematics, solver};
 
 /// A scalar of executed programs.

@@ -4,3 +4,4 @@
 mod arms;
 mod bits;
 mod postures;
+mod verified;

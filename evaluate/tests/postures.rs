@@ -9,10 +9,15 @@ use armgen_evaluate::{programs, solver, Solver, Unfit, Verdict};
 
 use crate::arms::{few, generated, made_up, robots, workspace};
 
-fn solver_of<T: armgen_evaluate::Scalar>(name: &str, text: &str, scalar: Scalar) -> Result<Solver<T>, String> {
+/// The solver of an arm with the limits of its joints.
+type Limited<T> = (Solver<T>, Vec<[T; 2]>);
+
+fn solver_of<T: Bits>(name: &str, text: &str, scalar: Scalar) -> Result<Limited<T>, String> {
     let (valid, diagnostics) = validate::read_for(&Source::new(name, text), scalar);
     let (manipulator, _) = valid.unwrap_or_else(|| panic!("{name}: {diagnostics:?}"));
-    solver(&manipulator)
+    let positions = manipulator.joints.iter().map(|joint| &joint.limits.position);
+    let limits = positions.map(|limits| limits.as_ref().map_or(T::UNLIMITED, |limits| limits.each_ref().map(T::nearest)));
+    Ok((solver(&manipulator)?, limits.collect()))
 }
 
 /// A posture is found again at its pose, and every posture found has the pose, all in process.
@@ -46,16 +51,16 @@ fn postures_are_found_again() {
             let found = solver.solve(&t, solver.redundancy(&q)).expect("what is given");
             assert!(!matches!(found.verdict, Verdict::Invalid | Verdict::Unreachable), "{name}: {found:?}");
             let mut nearest = f64::INFINITY;
+            let away = |((x, y), slides): ((&f64, &f64), &bool)| {
+                let d = (x - y).abs();
+                let turn = std::f64::consts::TAU;
+                if *slides {
+                    d
+                } else {
+                    (d % turn).min(turn - d % turn)
+                }
+            };
             for posture in found.q.chunks(q.len()) {
-                let away = |((x, y), slides): ((&f64, &f64), &bool)| {
-                    let d = (x - y).abs();
-                    let turn = std::f64::consts::TAU;
-                    if *slides {
-                        d
-                    } else {
-                        (d % turn).min(turn - d % turn)
-                    }
-                };
                 nearest = nearest.min(posture.iter().zip(&q).zip(&is_slide).map(away).fold(0.0, f64::max));
                 let reached = pose_of(posture);
                 for (x, y) in reached.iter().zip(&t).flat_map(|(x, y)| x[columns..].iter().zip(&y[columns..])) {
@@ -70,6 +75,18 @@ fn postures_are_found_again() {
                     .branches
                     .get(usize::from(*b))
                     .is_none_or(|name| !name.is_empty())));
+                // Next to `q` there is no other posture, two turns away it is the same.
+                let number = solver.nearest(&found, &q).expect("a posture");
+                let turned = |joint: usize| q[joint] + if is_slide[joint] { 0.0 } else { 4.0 * std::f64::consts::PI };
+                let within = solver.within(&found, |joint| [turned(joint) - 1e-4, turned(joint) + 1e-4]);
+                assert_eq!((within.len(), within.verdict), (1, found.verdict), "{name}: {q:?}");
+                let posture = &found.q[number * q.len()..][..q.len()];
+                for (joint, (x, y)) in within.q.iter().zip(posture).enumerate() {
+                    assert!((x - turned(joint)).abs() < 1e-5 && away(((x, y), &is_slide[joint])) < 1e-5, "{name}: {q:?}");
+                }
+                assert_eq!((within.branch[0], solver.nearest(&found, &q[1..])), (found.branch[number], None));
+                assert_eq!(solver.within(&found, |_| [f64::NEG_INFINITY, f64::INFINITY]), found);
+                assert!(solver.within(&found, |joint| [turned(joint) + 1e-4; 2]).is_empty());
             }
         }
         assert!(complete >= 30, "{name}: {complete}");
@@ -128,6 +145,15 @@ macro_rules! print {
             line += &format!("{}", found.verdict as u32);
             for one in found.as_slice() {
                 line += &format!(" {} {} {}", one.branch, u32::from(one.double), one.free);
+                for x in &one.q {
+                    line += &format!(" {:x}", x.to_bits());
+                }
+            }
+            let nearest = found.nearest_to(&[0.5; DOF]);
+            let is_nearest = |one| nearest.is_some_and(|nearest| std::ptr::eq(one, nearest));
+            line += &format!(" nearest {:?} within", found.as_slice().iter().position(is_nearest));
+            for one in found.within_limits().as_slice() {
+                line += &format!(" {}", one.branch);
                 for x in &one.q {
                     line += &format!(" {:x}", x.to_bits());
                 }
@@ -192,11 +218,15 @@ impl Project {
 
 /// A scalar by its bits.
 trait Bits: armgen_evaluate::Scalar {
+    const UNLIMITED: [Self; 2];
+    const HALF: Self;
     fn from_hex(text: &str) -> Self;
     fn hex(self) -> String;
 }
 
 impl Bits for f64 {
+    const UNLIMITED: [f64; 2] = [f64::NEG_INFINITY, f64::INFINITY];
+    const HALF: f64 = 0.5;
     fn from_hex(text: &str) -> f64 {
         f64::from_bits(u64::from_str_radix(text, 16).expect("bits"))
     }
@@ -206,6 +236,8 @@ impl Bits for f64 {
 }
 
 impl Bits for f32 {
+    const UNLIMITED: [f32; 2] = [f32::NEG_INFINITY, f32::INFINITY];
+    const HALF: f32 = 0.5;
     fn from_hex(text: &str) -> f32 {
         f32::from_bits(u32::from_str_radix(text, 16).expect("bits"))
     }
@@ -215,7 +247,7 @@ impl Bits for f32 {
 }
 
 /// Solves at every pose of the lines, compares the printed postures, and returns their number.
-fn compare<T: Bits>(name: &str, solver: &Solver<T>, lines: &[&str]) -> usize {
+fn compare<T: Bits>(name: &str, (solver, limits): &Limited<T>, lines: &[&str]) -> usize {
     let mut postures = 0;
     for line in lines {
         let words: Vec<&str> = line.split(' ').collect();
@@ -225,6 +257,12 @@ fn compare<T: Bits>(name: &str, solver: &Solver<T>, lines: &[&str]) -> usize {
         let mut own = format!("{} {}", found.miss.hex(), found.verdict as u32);
         for (i, q) in found.q.chunks(solver.of().prismatic.len()).enumerate() {
             own += &format!(" {} {} {}", found.branch[i], u32::from(found.double[i]), found.free[i]);
+            q.iter().for_each(|x| own += &format!(" {}", x.hex()));
+        }
+        own += &format!(" nearest {:?} within", solver.nearest(&found, &vec![T::HALF; limits.len()]));
+        let within = solver.within(&found, |joint| limits[joint]);
+        for (branch, q) in within.branch.iter().zip(within.q.chunks(limits.len())) {
+            own += &format!(" {branch}");
             q.iter().for_each(|x| own += &format!(" {}", x.hex()));
         }
         assert_eq!(own, words[17..].join(" "), "{name}: at {t:?}, {redundancy:?}");

@@ -12,6 +12,8 @@
 //!
 //! The compiled blocks of `armgen-inverse-kinematics` find all solutions of inverse kinematics ([`postures`]).
 //!
+//! [`Program::over`] executes the same program over another [`Arithmetic`], as a checker does.
+//!
 //! No state causes a panic: infinities and NaN pass through all operations by the rules of IEEE 754. [`Program::run`] allocates
 //! nothing; the caller prepares its [`Workspace`].
 //!
@@ -35,6 +37,7 @@
 //! assert_eq!(torque[2], 9.81 * libm::sin(1.0));
 //! ```
 
+mod arithmetic;
 mod execute;
 mod function;
 pub mod postures;
@@ -43,6 +46,7 @@ mod scalar;
 #[cfg(test)]
 mod tests;
 
+pub use arithmetic::Arithmetic;
 pub use execute::{Compiled, Mismatch, Workspace};
 pub use function::{Angle, Argument, Function, Input, Operand, Operation, Operator, Output, Result, Sines};
 pub use program::{Invalid, Program};

@@ -229,6 +229,10 @@ pub trait Solved: Scalar {
     fn solve(table: &Self::Table, pose: &[[Self; 4]; 4], redundancy: Option<Self>) -> Postures<Self>;
     #[doc(hidden)]
     fn swivel(table: &Self::Table, q: &[Self]) -> Option<Self>;
+    #[doc(hidden)]
+    fn within(table: &Self::Table, q: &mut [Self], limits: impl Fn(usize) -> [Self; 2]) -> bool;
+    #[doc(hidden)]
+    fn nearest_of(table: &Self::Table, all: &[Self], q: &[Self]) -> Option<usize>;
 }
 
 /// The inverse kinematics of an arm, ready to be called.
@@ -275,6 +279,31 @@ impl<T: Solved> Solver<T> {
             Redundancy::Joint(given) => q.get(given.joint).copied(),
             Redundancy::Swivel => T::swivel(&self.table, q),
         }
+    }
+
+    /// Those of the arm's postures that are within the limits of its joints, as `within_limits` of an emitted module gives them: angles are moved by whole
+    /// turns, and what rounding moved beyond a limit is put at it. The verdict stays as it was.
+    ///
+    /// - `limits`: of a joint by its number from 0 the lower and the upper end, rad or m; infinite where there is none.
+    pub fn within(&self, found: &Postures<T>, limits: impl Fn(usize) -> [T; 2]) -> Postures<T> {
+        let mut within = Postures { q: Vec::new(), branch: Vec::new(), double: Vec::new(), free: Vec::new(), ..*found };
+        let rest = found.branch.iter().zip(&found.double).zip(&found.free);
+        for (q, ((branch, double), free)) in found.q.chunks(self.of.prismatic.len()).zip(rest) {
+            let mut q = q.to_vec();
+            if T::within(&self.table, &mut q, &limits) {
+                within.q.append(&mut q);
+                within.branch.push(*branch);
+                within.double.push(*double);
+                within.free.push(*free);
+            }
+        }
+        within
+    }
+
+    /// The number of the posture whose largest difference from `q` is smallest, angles modulo whole turns; of equals the first. None if there is none, or
+    /// `q` has not as many entries as the arm has joints.
+    pub fn nearest(&self, found: &Postures<T>, q: &[T]) -> Option<usize> {
+        (q.len() == self.of.prismatic.len()).then(|| T::nearest_of(&self.table, &found.q, q))?
     }
 }
 

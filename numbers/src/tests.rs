@@ -81,37 +81,42 @@ fn random_function(random: &mut Random) -> Function<f64> {
     }
 }
 
+fn sign(x: f64) -> f64 {
+    if x > 0.0 {
+        1.0
+    } else if x < 0.0 {
+        -1.0
+    } else {
+        x
+    }
+}
+
+fn sin_cos(angle: &Angle<f64>, sines: Sines, arguments: [&[f64]; 2]) -> (f64, f64) {
+    let entry = |i: usize| arguments[angle.argument][i];
+    let term = |sum: f64, &(i, minus): &(usize, bool)| if minus { sum - entry(i) } else { sum + entry(i) };
+    let sum = angle.terms[1..].iter().fold(entry(angle.terms[0].0), term);
+    let sum = angle.turn.map_or(sum, |turn| sum + turn);
+    match sines {
+        Sines::Libm => libm::sincos(sum),
+        Sines::Std => sum.sin_cos(),
+        Sines::Fast => armgen_elementary::f64::sin_cos_of_any(sum),
+    }
+}
+
+fn operated(operator: Operator, a: f64, b: f64) -> f64 {
+    match operator {
+        Operator::Add => a + b,
+        Operator::Subtract => a - b,
+        Operator::Multiply => a * b,
+        Operator::Divide => a / b,
+        Operator::Sign => sign(a),
+        Operator::OppositeSign => sign(-a),
+    }
+}
+
 /// The result of one state, value by value.
 fn plain(function: &Function<f64>, arguments: [&[f64]; 2]) -> Vec<f64> {
-    let sign = |x: f64| {
-        if x > 0.0 {
-            1.0
-        } else if x < 0.0 {
-            -1.0
-        } else {
-            x
-        }
-    };
-    let sin_cos = |angle: usize| {
-        let angle = &function.angles[angle];
-        let entry = |i: usize| arguments[angle.argument][i];
-        let sum = angle.terms[1..].iter().fold(
-            entry(angle.terms[0].0),
-            |sum, &(i, minus)| {
-                if minus {
-                    sum - entry(i)
-                } else {
-                    sum + entry(i)
-                }
-            },
-        );
-        let sum = angle.turn.map_or(sum, |turn| sum + turn);
-        match function.sines {
-            Sines::Libm => libm::sincos(sum),
-            Sines::Std => sum.sin_cos(),
-            Sines::Fast => armgen_elementary::f64::sin_cos_of_any(sum),
-        }
-    };
+    let sin_cos = |angle: usize| sin_cos(&function.angles[angle], function.sines, arguments);
     let mut values: Vec<f64> = Vec::new();
     for input in &function.inputs {
         values.push(match *input {
@@ -128,14 +133,7 @@ fn plain(function: &Function<f64>, arguments: [&[f64]; 2]) -> Vec<f64> {
     };
     for operation in &function.operations {
         let (a, b) = (of(&values, operation.left), of(&values, operation.right));
-        values.push(match operation.operator {
-            Operator::Add => a + b,
-            Operator::Subtract => a - b,
-            Operator::Multiply => a * b,
-            Operator::Divide => a / b,
-            Operator::Sign => sign(a),
-            Operator::OppositeSign => sign(-a),
-        });
+        values.push(operated(operation.operator, a, b));
     }
     let outputs = function.outputs.iter().map(|output| {
         let value = of(&values, output.operand);
@@ -148,13 +146,50 @@ fn plain(function: &Function<f64>, arguments: [&[f64]; 2]) -> Vec<f64> {
     outputs.collect()
 }
 
+/// Floats as any other arithmetic.
+struct Floats<'a> {
+    arguments: [&'a [f64]; 2],
+    sines: Sines,
+}
+
+impl Arithmetic<f64> for Floats<'_> {
+    type Value = f64;
+
+    fn input(&mut self, input: &Input<f64>) -> f64 {
+        match *input {
+            Input::Entry { argument, entry } => self.arguments[argument][entry],
+            Input::Sign { argument, entry } => sign(self.arguments[argument][entry]),
+            Input::Fading { argument, entry, velocity } => {
+                armgen_elementary::f64::fading(self.arguments[argument][entry], velocity)
+            }
+            Input::Sine(_) | Input::Cosine(_) => panic!("angles are asked for by themselves"),
+        }
+    }
+
+    fn sine_cosine(&mut self, angle: &Angle<f64>) -> (f64, f64) {
+        sin_cos(angle, self.sines, self.arguments)
+    }
+
+    fn constant(&mut self, value: f64) -> f64 {
+        value
+    }
+
+    fn result(&mut self, operator: Operator, a: &f64, b: &f64) -> f64 {
+        operated(operator, *a, *b)
+    }
+
+    fn negated(&mut self, value: &f64) -> f64 {
+        -value
+    }
+}
+
 /// Bits; one pattern for all that is not a number.
 fn bits(values: &[f64]) -> Vec<u64> {
     values.iter().map(|value| if value.is_nan() { u64::MAX } else { value.to_bits() }).collect()
 }
 
 #[test]
-fn random_functions_have_the_bits_of_a_plain_evaluation_at_every_number_of_states() {
+fn random_functions_have_the_bits_of_a_plain_evaluation_at_every_number_of_states_and_over_any_arithmetic() {
     const SEED: u64 = 20;
     for seed in SEED..SEED + 150 {
         let mut random = Random(seed);
@@ -169,6 +204,8 @@ fn random_functions_have_the_bits_of_a_plain_evaluation_at_every_number_of_state
                 let own = [0, 1].map(|i| &given[i][state * LENGTHS[i]..(state + 1) * LENGTHS[i]]);
                 let found = &result[state * 4..(state + 1) * 4];
                 assert_eq!(bits(found), bits(&plain(&function, own)), "seed {seed}, state {state} of {states}: {function:?}");
+                let over = program.over(&mut Floats { arguments: own, sines: function.sines }).expect("places that are written");
+                assert_eq!(bits(found), bits(&over), "seed {seed}, over another arithmetic: {function:?}");
             }
             // One vector for all states.
             let shared = &given[1][..LENGTHS[1]];

@@ -78,6 +78,10 @@ class InternalError(RuntimeError):
         )
 
 
+class VerificationError(RuntimeError):
+    """What the checker has looked at is not the equations: the first wrong entry, and how it is wrong."""
+
+
 def _structures_of_catalogue() -> dict[str, Any]:
     structures = {}
     for name, _, _, parts, _ in _native.catalogue_of_functions():
@@ -95,6 +99,7 @@ _structures = _structures_of_catalogue()
 globals().update({_made.__name__: _made for _made in _structures.values()})
 
 Function = _native.Function
+Postures = _native.Postures
 
 
 def load(
@@ -306,6 +311,36 @@ class Robot:
         """Their values in the description."""
         return _constant(self._arm.base_parameters[1])
 
+    def inverse_kinematics(
+        self,
+        pose: Any = None,
+        redundancy: Any = None,
+        *,
+        position: Any = None,
+        rotation: Any = None,
+        threads: int = 1,
+    ) -> Any:
+        """All postures at a pose: `Postures`, whose `q` has the joint variables as rows. Of arrays of poses, a list.
+
+        pose: T = (R p; 0 1) of the end effector in the base frame, 4 x 4, m. position, rotation: p and R, instead of it; p alone where
+        the arm's target is a position. redundancy: what `redundancy` names. Leading axes are poses, and broadcast. threads: how many
+        share the poses; 0 is as many as there are processors.
+
+        Raises ValueError if the arm has no inverse kinematics, and says why.
+        """
+        return self._arm.inverse_kinematics(pose, redundancy, position, rotation, threads)
+
+    @property
+    def redundancy(self) -> str | None:
+        """What `inverse_kinematics` is given beside a pose, where the arm has one joint more than the target asks for: the name of a joint
+        (its value, rad or m) or `"swivel"` (the angle of the elbow about the line from shoulder to wrist, rad).
+        """
+        return self._arm.redundancy()
+
+    def inverse_kinematics_redundancy(self, q: Any) -> Any:
+        """The redundancy with which `inverse_kinematics` finds the posture q again: a float; of an array of postures, an array."""
+        return self._arm.inverse_kinematics_redundancy(q)
+
     def prepare(self, *names: str) -> None:
         """Derives functions now, on all processors, instead of at their first calls; all that the arm has if none is named."""
         self._arm.prepare(list(names))
@@ -404,6 +439,21 @@ class Robot:
             "--ik": ik,
         }
         return self._arm.generate(options + [flag for flag, wanted in flags.items() if wanted])
+
+    def verify(self, text: str | None = None, language: str = "rust") -> dict[str, dict[str, Any]]:
+        """Verifies the functions as they are executed here; of a text, the emitted module in a language, as `armgen verify` does.
+
+        The checker derives the equations in another way and compares in exact arithmetic, at random points. For each function it returns
+        the numbers of `points` in prime fields and of `rational` points, and `log2_odds`, those that a wrong function passes.
+
+        Raises VerificationError with the first wrong entry. Takes seconds, of long arms minutes.
+        """
+        if text is None:
+            self.prepare()
+        fault, functions = self._arm.verified(text, language)
+        if fault is not None:
+            raise VerificationError(fault)
+        return {name: {"points": points, "rational": rational, "log2_odds": odds} for name, points, rational, odds in functions}
 
     def __getattr__(self, name: str) -> Any:
         own = self.__dict__.get("name")

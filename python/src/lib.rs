@@ -1,16 +1,18 @@
 //! The native half of the Python package: descriptions, equations and numbers. `armgen/__init__.py` is the other half.
 //!
 //! ```text
-//! robot.rs    from a text to an arm, and its facts
-//! numbers.rs  functions over arrays of NumPy
-//! texts.rs    what the program writes
-//! faults.rs   diagnostics and panics as exceptions
+//! robot.rs     from a text to an arm, and its facts
+//! numbers.rs   functions over arrays of NumPy
+//! postures.rs  all postures at a pose
+//! texts.rs     what the program writes
+//! faults.rs    diagnostics and panics as exceptions
 //! ```
 //!
 //! The exceptions and the types of results that have several parts are classes of the other half, which a function here asks for by name.
 
 mod faults;
 mod numbers;
+mod postures;
 mod robot;
 mod texts;
 
@@ -55,6 +57,7 @@ fn panic(py: Python<'_>) -> PyResult<()> {
 fn _native(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_class::<robot::Arm>()?;
     module.add_class::<numbers::Function>()?;
+    module.add_class::<postures::Postures>()?;
     module.add_function(wrap_pyfunction!(robot::read, module)?)?;
     module.add_function(wrap_pyfunction!(catalogue_of_functions, module)?)?;
     module.add_function(wrap_pyfunction!(meant, module)?)?;

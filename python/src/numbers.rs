@@ -21,7 +21,7 @@ use crate::faults::{guarded, named, refused_for};
 use crate::robot::Robot;
 
 /// From so many states on, other threads of Python run meanwhile; with fewer, letting them costs more than the work.
-const MANY: usize = 64;
+pub(crate) const MANY: usize = 64;
 
 /// The most arguments that a function has.
 const ARGUMENTS: usize = 6;
@@ -54,6 +54,10 @@ impl Derived {
         };
         let parts = program.results().iter().map(|result| result.shape.as_slice()).map(part).collect();
         Derived { cost: Cost::of(function), method: function.method, parts, program, idle: Mutex::default() }
+    }
+
+    pub(crate) fn program(&self) -> &Program<f64> {
+        &self.program
     }
 
     fn with_room<R>(&self, work: impl FnOnce(&mut Room) -> R) -> R {
@@ -92,17 +96,10 @@ impl Derived {
         }
         let works = Mutex::new(works);
         let next = || works.lock().unwrap_or_else(PoisonError::into_inner).pop();
-        let work = || {
+        on_threads(threads, || {
             while let Some((first, count, own)) = next() {
                 self.some(arguments, first, count, own, states);
             }
-        };
-        std::thread::scope(|scope| {
-            // Where there are no more threads, those that there are do the work.
-            for _ in 1..threads {
-                let _ = std::thread::Builder::new().spawn_scoped(scope, work);
-            }
-            work();
         });
     }
 
@@ -136,6 +133,26 @@ impl Derived {
                 }
             }
         });
+    }
+}
+
+/// Does a work, which is shared by as many threads, this one among them.
+pub(crate) fn on_threads(threads: usize, work: impl Fn() + Sync) {
+    std::thread::scope(|scope| {
+        // Where there are no more threads, those that there are do the work.
+        for _ in 1..threads {
+            let _ = std::thread::Builder::new().spawn_scoped(scope, &work);
+        }
+        work();
+    });
+}
+
+/// How many threads share a work for which `threads` are asked: 0 is as many as there are processors, and there are no more than these.
+pub(crate) fn granted(threads: usize) -> usize {
+    let processors = std::thread::available_parallelism().map_or(1, usize::from);
+    match threads {
+        0 => processors,
+        threads => threads.min(processors),
     }
 }
 
@@ -287,7 +304,7 @@ impl Function {
             let mut held: Vec<PyReadonlyArrayDyn<'py, f64>> = Vec::with_capacity(arrays.len());
             for (array, (_, length)) in arrays.into_iter().zip(&self.arguments) {
                 let is_whole = array.ndim() == 1 || array.shape()[..array.ndim() - 1] == lead;
-                let array = if is_whole { array } else { spread(&numpy, &array, &lead, *length)? };
+                let array = if is_whole { array } else { spread(&numpy, &array, &lead, &[*length])? };
                 held.push(array.try_readonly().map_err(|error| PyValueError::new_err(error.to_string()))?);
             }
             let slices = held.iter().map(|array| array.as_slice()).collect::<Result<Vec<_>, _>>()?;
@@ -301,8 +318,7 @@ impl Function {
                 parts.push(part.as_slice_mut()?);
             }
             let derived = self.derived(py)?;
-            let processors = || std::thread::available_parallelism().map_or(1, usize::from);
-            let threads = if given.threads == 0 { processors() } else { given.threads.min(processors()) };
+            let threads = granted(given.threads);
             if states < MANY {
                 derived.many(&slices, parts, states, 1);
             } else {
@@ -319,23 +335,8 @@ impl Function {
 
     /// The axes of states, broadcast.
     fn states(&self, arrays: &[Bound<'_, PyArrayDyn<f64>>]) -> PyResult<Vec<usize>> {
-        let leads: Vec<&[usize]> = arrays.iter().map(|array| &array.shape()[..array.ndim() - 1]).collect();
-        let dimensions = leads.iter().map(|lead| lead.len()).max().unwrap_or_default();
-        let mut all = vec![1; dimensions];
-        for lead in &leads {
-            for (own, common) in lead.iter().rev().zip(all.iter_mut().rev()) {
-                match (*own, *common) {
-                    (own, common) if own == common => {}
-                    (1, _) => {}
-                    (own, 1) => *common = own,
-                    _ => {
-                        let list = self.arguments.iter().zip(&leads).map(|((name, _), lead)| format!("{name} {}", axes(lead)));
-                        let list: Vec<String> = list.collect();
-                        return Err(PyValueError::new_err(format!("the axes of states do not go together: {}", list.join(", "))));
-                    }
-                }
-            }
-        }
+        let leads = arrays.iter().map(|array| &array.shape()[..array.ndim() - 1]);
+        let all = broadcast(&self.arguments.iter().map(|(name, _)| *name).zip(leads).collect::<Vec<_>>())?;
         let entries = self.shapes.iter().map(|shape| shape.iter().product::<usize>()).sum::<usize>() * size_of::<f64>();
         let bytes = all.iter().try_fold(entries, |product, axis| product.checked_mul(*axis));
         match bytes.filter(|&bytes| bytes <= isize::MAX as usize) {
@@ -500,7 +501,7 @@ fn array_type(py: Python<'_>) -> PyResult<&Bound<'_, PyType>> {
 }
 
 /// A new array with these entries; of no axes, a float.
-fn fresh<'py>(py: Python<'py>, shape: &[usize], entries: &[f64]) -> PyResult<Bound<'py, PyAny>> {
+pub(crate) fn fresh<'py>(py: Python<'py>, shape: &[usize], entries: &[f64]) -> PyResult<Bound<'py, PyAny>> {
     match *shape {
         [] => Ok(PyFloat::new(py, entries[0]).into_any()),
         [_] => Ok(PyArray1::from_slice(py, entries).into_any()),
@@ -519,7 +520,7 @@ fn fresh<'py>(py: Python<'py>, shape: &[usize], entries: &[f64]) -> PyResult<Bou
 }
 
 /// An array whose entries are still to be written.
-fn empty<'py>(numpy: &Bound<'py, PyModule>, shape: &[usize]) -> PyResult<Bound<'py, PyArrayDyn<f64>>> {
+pub(crate) fn empty<'py>(numpy: &Bound<'py, PyModule>, shape: &[usize]) -> PyResult<Bound<'py, PyArrayDyn<f64>>> {
     Ok(numpy.getattr("empty")?.call1((PyTuple::new(numpy.py(), shape)?,))?.cast_into()?)
 }
 
@@ -528,60 +529,85 @@ fn is_plain(array: &Bound<'_, PyArrayDyn<f64>>) -> bool {
     array.is_c_contiguous() && array.data().is_aligned()
 }
 
-/// An argument as an array of float64, of which nothing is lost but digits beyond those of a float.
-fn array<'py>(
+/// The axes of states of arguments, broadcast.
+pub(crate) fn broadcast(leads: &[(&str, &[usize])]) -> PyResult<Vec<usize>> {
+    let dimensions = leads.iter().map(|(_, lead)| lead.len()).max().unwrap_or_default();
+    let mut all = vec![1; dimensions];
+    for (_, lead) in leads {
+        for (own, common) in lead.iter().rev().zip(all.iter_mut().rev()) {
+            match (*own, *common) {
+                (own, common) if own == common => {}
+                (1, _) => {}
+                (own, 1) => *common = own,
+                _ => {
+                    let list: Vec<String> = leads.iter().map(|(name, lead)| format!("{name} {}", axes(lead))).collect();
+                    return Err(PyValueError::new_err(format!("the axes of states do not go together: {}", list.join(", "))));
+                }
+            }
+        }
+    }
+    Ok(all)
+}
+
+/// An argument as an array of float64, of which nothing is lost but digits beyond those of a float. A number is an array of one entry, and is told.
+pub(crate) fn real<'py>(
+    numpy: &Bound<'py, PyModule>,
+    name: &str,
+    given: &Bound<'py, PyAny>,
+) -> PyResult<(Bound<'py, PyArrayDyn<f64>>, bool)> {
+    let py = numpy.py();
+    let plain = given.is_exact_instance(array_type(py)?).then(|| given.cast::<PyArrayDyn<f64>>().ok()).flatten();
+    if let Some(array) = plain.filter(|array| is_plain(array) && array.ndim() > 0) {
+        return Ok((array.clone(), false));
+    }
+    // NumPy would drop the mask.
+    if given.hasattr("mask")? && given.hasattr("filled")? {
+        return Err(PyTypeError::new_err(format!("{name}: a masked array; fill it first")));
+    }
+    let array = numpy.getattr("asarray")?.call1((given,))?;
+    let kind = array.getattr("dtype")?;
+    if !"biuf".contains(kind.getattr("kind")?.extract::<char>()?) {
+        return Err(PyTypeError::new_err(format!("{name}: real numbers, not {}", kind.str()?)));
+    }
+    let options = PyDict::new(py);
+    options.set_item("dtype", numpy.getattr("float64")?)?;
+    options.set_item("requirements", "CA")?;
+    // What has no axis has one behind `require`.
+    let is_number = array.cast::<PyUntypedArray>()?.ndim() == 0;
+    Ok((numpy.getattr("require")?.call((array,), Some(&options))?.cast_into()?, is_number))
+}
+
+/// The same of vectors of a length.
+pub(crate) fn array<'py>(
     numpy: &Bound<'py, PyModule>,
     name: &str,
     length: usize,
     given: &Bound<'py, PyAny>,
 ) -> PyResult<Bound<'py, PyArrayDyn<f64>>> {
-    let py = numpy.py();
-    let plain = given.is_exact_instance(array_type(py)?).then(|| given.cast::<PyArrayDyn<f64>>().ok()).flatten();
-    let array = match plain.filter(|array| is_plain(array)) {
-        Some(array) => array.clone(),
-        None => {
-            // NumPy would drop the mask.
-            if given.hasattr("mask")? && given.hasattr("filled")? {
-                return Err(PyTypeError::new_err(format!("{name}: a masked array; fill it first")));
-            }
-            let array = numpy.getattr("asarray")?.call1((given,))?;
-            let kind = array.getattr("dtype")?;
-            if !"biuf".contains(kind.getattr("kind")?.extract::<char>()?) {
-                return Err(PyTypeError::new_err(format!("{name}: real numbers, not {}", kind.str()?)));
-            }
-            let options = PyDict::new(py);
-            options.set_item("dtype", numpy.getattr("float64")?)?;
-            options.set_item("requirements", "CA")?;
-            // What has no axis has one behind `require`, and is refused here.
-            if array.cast::<PyUntypedArray>()?.ndim() == 0 {
-                return Err(PyValueError::new_err(format!("{name}: a number, not a vector of {length}")));
-            }
-            numpy.getattr("require")?.call((array,), Some(&options))?.cast_into::<PyArrayDyn<f64>>()?
-        }
-    };
+    let (array, is_number) = real(numpy, name, given)?;
     match array.shape().last() {
-        None => Err(PyValueError::new_err(format!("{name}: a number, not a vector of {length}"))),
-        Some(&last) if last != length => {
+        Some(&last) if last == length && !is_number => Ok(array),
+        Some(&last) if !is_number => {
             Err(PyValueError::new_err(format!("{name}: the last axis has {last} entries, not {length}")))
         }
-        Some(_) => Ok(array),
+        _ => Err(PyValueError::new_err(format!("{name}: a number, not a vector of {length}"))),
     }
 }
 
-/// An argument with a vector for each state.
-fn spread<'py>(
+/// An argument with its entries for each state, `shape` of them.
+pub(crate) fn spread<'py>(
     numpy: &Bound<'py, PyModule>,
     array: &Bound<'py, PyArrayDyn<f64>>,
     lead: &[usize],
-    length: usize,
+    shape: &[usize],
 ) -> PyResult<Bound<'py, PyArrayDyn<f64>>> {
-    let shape = PyTuple::new(numpy.py(), [lead, &[length]].concat())?;
+    let shape = PyTuple::new(numpy.py(), [lead, shape].concat())?;
     let spread = numpy.getattr("broadcast_to")?.call1((array, shape))?;
     Ok(numpy.getattr("ascontiguousarray")?.call1((spread,))?.cast_into()?)
 }
 
 /// Axes as Python writes a tuple.
-fn axes(axes: &[usize]) -> String {
+pub(crate) fn axes(axes: &[usize]) -> String {
     match axes {
         [one] => format!("({one},)"),
         axes => format!("({})", axes.iter().map(usize::to_string).collect::<Vec<_>>().join(", ")),

@@ -7,6 +7,7 @@ use std::sync::{Arc, OnceLock};
 use armgen_codegen::catalogue::{self, Quantity};
 use armgen_codegen::derive::parameters::nominal;
 use armgen_codegen::diagnostic::{AnyCode, Diagnostic, Diagnostics, Severity};
+use armgen_codegen::emit::Language;
 use armgen_codegen::exact::{Number, Polynomial};
 use armgen_codegen::kinds::JointKind;
 use armgen_codegen::manipulator::Manipulator;
@@ -14,12 +15,16 @@ use armgen_codegen::schedule::{Options, Selection};
 use armgen_codegen::source::Source;
 use armgen_codegen::validate::{self, Places};
 use armgen_codegen::{Model, Scalar, Trig};
+use armgen_evaluate::{Redundancy, Solver};
+use armgen_verify::reader::ModuleText;
+use armgen_verify::report::FunctionReport;
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyTuple};
 
 use crate::faults::{guarded, listed, refused, refused_for};
 use crate::numbers::{Derived, Function};
+use crate::postures::{self, Target};
 use crate::texts;
 
 /// A valid arm, with the programs of its functions as far as they are derived.
@@ -29,6 +34,8 @@ pub(crate) struct Robot {
     places: Places,
     pub(crate) functions: Vec<Slot>,
     absent: Vec<(String, String)>,
+    /// What finds its postures; the reason where nothing does.
+    solver: OnceLock<Result<Solver<f64>, String>>,
 }
 
 /// A function that the arm has.
@@ -49,7 +56,7 @@ impl Robot {
                 None => functions.push(Slot { quantity, with, derived: OnceLock::new() }),
             }
         }
-        Robot { source, model, places, functions, absent }
+        Robot { source, model, places, functions, absent, solver: OnceLock::new() }
     }
 
     /// A function, derived now if it was not before.
@@ -65,6 +72,28 @@ impl Robot {
     /// The same if it was derived before.
     pub(crate) fn known(&self, index: usize) -> Option<&Derived> {
         self.functions[index].derived.get()?.as_ref().ok()
+    }
+
+    /// What finds its postures, made now if it was not before.
+    pub(crate) fn solver(&self, py: Python<'_>) -> PyResult<&Solver<f64>> {
+        let arm = &self.model.manipulator;
+        let found = self.solver.get().unwrap_or_else(|| py.detach(|| self.solver.get_or_init(|| armgen_evaluate::solver(arm))));
+        found.as_ref().map_err(|reason| PyValueError::new_err(format!("there is no `inverse_kinematics` of this arm: {reason}")))
+    }
+
+    /// What is given to it beside a pose: the name of a joint, or "swivel".
+    pub(crate) fn redundancy(&self, py: Python<'_>) -> PyResult<Option<&str>> {
+        let name = |redundancy: &Redundancy<f64>| match redundancy {
+            Redundancy::Joint(given) => self.model.manipulator.joints[given.joint].name.as_str(),
+            Redundancy::Swivel => "swivel",
+        };
+        self.solver(py).map(|solver| solver.of().redundancy.as_ref().map(name))
+    }
+
+    /// The lower and the upper end of a joint's range, infinite where there is none.
+    pub(crate) fn position_limits(&self, joint: usize) -> [f64; 2] {
+        let limits = self.model.manipulator.joints[joint].limits.position.as_ref();
+        limits.map_or([f64::NEG_INFINITY, f64::INFINITY], |limits| limits.each_ref().map(Number::to_f64))
     }
 
     /// The functions of these names, which the arm has.
@@ -98,10 +127,7 @@ impl Arm {
         facts.set_item("dof", arm.dof())?;
         facts.set_item("joint_names", PyTuple::new(py, joints.iter().map(|joint| &joint.name))?)?;
         facts.set_item("revolute", joints.iter().map(|joint| joint.kind == JointKind::Revolute).collect::<Vec<_>>())?;
-        let positions = joints.iter().map(|joint| {
-            let limits = joint.limits.position.as_ref();
-            limits.map_or([f64::NEG_INFINITY, f64::INFINITY], |limits| limits.each_ref().map(Number::to_f64)).to_vec()
-        });
+        let positions = (0..joints.len()).map(|joint| self.robot.position_limits(joint).to_vec());
         facts.set_item("position_limits", positions.collect::<Vec<_>>())?;
         facts.set_item("velocity_limits", joints.iter().map(|joint| limit(&joint.limits.velocity)).collect::<Vec<_>>())?;
         facts.set_item("effort_limits", joints.iter().map(|joint| limit(&joint.limits.effort)).collect::<Vec<_>>())?;
@@ -175,6 +201,58 @@ impl Arm {
         made.map(BTreeMap::from_iter).map_err(PyValueError::new_err)
     }
 
+    /// All postures at a pose or at its position and rotation; at arrays of them lists of these.
+    #[pyo3(signature = (pose, redundancy, position, rotation, threads))]
+    fn inverse_kinematics<'py>(
+        &self,
+        py: Python<'py>,
+        pose: Option<Bound<'py, PyAny>>,
+        redundancy: Option<Bound<'py, PyAny>>,
+        position: Option<Bound<'py, PyAny>>,
+        rotation: Option<Bound<'py, PyAny>>,
+        threads: i64,
+    ) -> PyResult<Bound<'py, PyAny>> {
+        guarded(py, || postures::solved(py, &self.robot, Target { pose, position, rotation }, redundancy, threads))
+    }
+
+    /// What is given to it beside a pose: the name of a joint, or "swivel".
+    fn redundancy(&self, py: Python<'_>) -> PyResult<Option<&str>> {
+        guarded(py, || self.robot.redundancy(py))
+    }
+
+    /// The redundancy of a posture, of an array of postures an array.
+    fn inverse_kinematics_redundancy<'py>(&self, py: Python<'py>, q: Bound<'py, PyAny>) -> PyResult<Bound<'py, PyAny>> {
+        guarded(py, || postures::redundancy_of(py, &self.robot, &q))
+    }
+
+    /// What the checker finds of a module, or of the functions as they are executed here: the first fault, and of each function its name, numbers of
+    /// points in prime fields and of rational points, and log2 of the odds of a miss.
+    fn verified(&self, py: Python<'_>, text: Option<&str>, language: &str) -> PyResult<Verified> {
+        let Some(language) = Language::ALL.into_iter().find(|known| known.name() == language) else {
+            let known = Language::ALL.map(Language::name).join("`, `");
+            return Err(PyValueError::new_err(format!("language: one of `{known}`, not `{language}`")));
+        };
+        let robot = &*self.robot;
+        let report = guarded(py, || {
+            Ok(py.detach(|| match text {
+                Some(text) => Ok(armgen_certify::verify(&robot.source, ModuleText { language, text }, None)),
+                None => {
+                    let derived = (0..robot.functions.len()).map(|index| robot.derived(index));
+                    let derived = derived.collect::<Result<Vec<_>, _>>()?;
+                    let programs: Vec<_> = derived.into_iter().map(Derived::program).collect();
+                    Ok(armgen_certify::verify_executed(&robot.source, &programs))
+                }
+            }))
+        })?;
+        let report = report.map_err(|fault: Box<Diagnostic>| refused_for(py, &robot.source, *fault))?;
+        let fault = match report.first_fault() {
+            None if report.functions.is_empty() => Some("there is no function".to_owned()),
+            fault => fault,
+        };
+        let of = |one: &FunctionReport| (one.name.clone(), one.points, one.exact_points, one.log2_odds);
+        Ok((fault, report.functions.iter().map(of).collect()))
+    }
+
     /// Derives functions at the same time; all that the arm has if none is named.
     fn prepare(&self, py: Python<'_>, names: Vec<String>) -> PyResult<()> {
         let robot = &*self.robot;
@@ -209,6 +287,9 @@ impl Arm {
         done.map_err(|fault: Box<Diagnostic>| refused_for(py, &robot.source, *fault))
     }
 }
+
+/// The first fault that the checker finds, and the functions that it has looked at.
+type Verified = (Option<String>, Vec<(String, usize, usize, f64)>);
 
 fn table(entries: &[catalogue::Parameter]) -> Parameters {
     entries.iter().map(|parameter| (parameter.name.clone(), parameter.nominal.to_f64())).unzip()

@@ -277,7 +277,7 @@ def test_stub():
 
 
 def test_gravity_may_be_an_argument() -> None:
-    text = (ROBOTS / "scara4.yaml").read_text()
+    text = (ROOT / "robots/scara4.yaml").read_text()
     fixed = armgen.loads(text, name="fixed.yaml")
     line = next(line for line in text.splitlines() if line.startswith("gravity:"))
     mounted = armgen.loads(text.replace(line, "gravity: {argument: " + line.split(":", 1)[1] + "}"), name="mounted.yaml")

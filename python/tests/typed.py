@@ -23,6 +23,13 @@ reason: str = robot.absent["gravity"]
 finite: NDArray[np.bool_] = np.isfinite(robot.position_limits) & robot.revolute[:, None]
 texts: list[str] = [robot.text, robot.check(), robot.show("gravity"), robot.latex("gravity", digits=4), repr(robot)]
 files: dict[str, str] = robot.generate("python", functions=["gravity"])
+postures: armgen.Postures = robot.inverse_kinematics(np.eye(4), 0.5)
+rows: list[NDArray[np.float64]] = [posture for posture in postures.within_limits()]
+nearest: NDArray[np.float64] | None = postures.nearest_to([0.0] * robot.dof)
+are_all: bool = postures.verdict == "complete" and len(postures) == len(postures.branch_names)
+lists: list[armgen.Postures] = robot.inverse_kinematics(position=np.zeros((5, 3)), rotation=np.eye(3), threads=0)
+given: str | None = robot.redundancy
+odds: float = robot.verify()["gravity"]["log2_odds"]
 robot.page("robot.html")
 robot.prepare("gravity")
 

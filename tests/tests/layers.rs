@@ -140,6 +140,7 @@ const NUMBERS: Layers = &[
     ("function", &[]),
     ("program", &["function", "scalar"]),
     ("execute", &["function", "program", "scalar"]),
+    ("arithmetic", &["function", "program", "scalar"]),
     ("postures", &["scalar"]),
 ];
 

@@ -145,6 +145,15 @@ fn postures<const JOINTS: usize, const MOST: usize>(found: &block::Postures<JOIN
     }
 }
 
+/// The most joints of an arm that has inverse kinematics.
+const MOST_JOINTS: usize = 7;
+
+/// One posture as the blocks take it. Joints behind those of the arm slide, stay at 0, and have no limits.
+fn posture(q: &[Real]) -> block::Posture<MOST_JOINTS> {
+    let q = std::array::from_fn(|joint| q.get(joint).copied().unwrap_or(0.0));
+    block::Posture { q, branch: 0, double: false, free: 0 }
+}
+
 /// Arguments of a call that all constructions share.
 struct At {
     /// The pose that the joints of the loop have to reach.
@@ -169,6 +178,41 @@ impl At {
 }
 
 impl Table {
+    fn slides(&self) -> [bool; MOST_JOINTS] {
+        std::array::from_fn(|joint| self.prismatic.get(joint).copied().unwrap_or(true))
+    }
+
+    /// Whether a posture is within the limits, into which it is moved.
+    fn within(&self, q: &mut [Real], limits: impl Fn(usize) -> [Real; 2]) -> bool {
+        let own = self.prismatic.len();
+        let limits = |joint| if joint < own { limits(joint) } else { [Real::NEG_INFINITY, Real::INFINITY] };
+        let alone = block::Postures { count: 1, all: [posture(q)], ..block::Postures::<MOST_JOINTS, 1>::none(block::Verdict::Complete) };
+        let within = alone.within(std::array::from_fn(limits), self.slides(), self.length);
+        let moved = within.as_slice().first();
+        if let Some(moved) = moved {
+            q.iter_mut().zip(moved.q).for_each(|(own, moved)| *own = moved);
+        }
+        moved.is_some()
+    }
+
+    /// The number of the nearest of postures one after the other, found pair by pair: however many there are.
+    fn nearest(&self, all: &[Real], q: &[Real]) -> Option<usize> {
+        let q = posture(q).q;
+        let mut nearest = None;
+        for (number, next) in all.chunks(self.prismatic.len()).enumerate() {
+            let next = posture(next);
+            let known = nearest.map_or(next, |(_, known)| known);
+            // The branch tells the two apart.
+            let pair = [known, block::Posture { branch: 1, ..next }];
+            let pair = block::Postures { count: 2, all: pair, ..block::Postures::none(block::Verdict::Complete) };
+            let found = pair.nearest(&q, self.slides());
+            if found.is_some_and(|found| found.branch == 1 || nearest.is_none()) {
+                nearest = Some((number, next));
+            }
+        }
+        nearest.map(|(number, _)| number)
+    }
+
     fn solve(&self, t: &[[Real; 4]; 4], redundancy: Option<Real>) -> Postures<Real> {
         let is_target = if self.orientation { block::is_pose(t) } else { block::all_finite(t) };
         if !is_target || redundancy.is_some_and(|value| !value.is_finite()) {
@@ -344,5 +388,13 @@ impl Solved for Real {
             (Calls::ShoulderElbowWrist(way), Ok(q)) => Some(block::swivel_angle(way, &q)),
             _ => None,
         }
+    }
+
+    fn within(table: &Table, q: &mut [Real], limits: impl Fn(usize) -> [Real; 2]) -> bool {
+        table.within(q, limits)
+    }
+
+    fn nearest_of(table: &Table, all: &[Real], q: &[Real]) -> Option<usize> {
+        table.nearest(all, q)
     }
 }

@@ -1,8 +1,8 @@
 //! Stops, overrides and resumes on a timed path, within all limits.
 
-use super::inner::{Assumed, HalfPlanes};
+use super::inner::HalfPlanes;
 use super::law::Law;
-use super::segment::{Inner, Segment};
+use super::segment::{Assumed, Inner, Segment};
 use super::timed::Timing;
 use crate::linalg::lit;
 use crate::reference::JointReference;

@@ -9,7 +9,7 @@ use super::limits::Limits;
 use super::model::JointFriction;
 use super::outer::ROUNDING;
 use super::row::{Form, Line, Row};
-use super::segment::Segment;
+use super::segment::{Assumed, Segment};
 use crate::linalg::lit;
 use nalgebra::RealField;
 
@@ -29,17 +29,6 @@ pub(super) struct HalfPlanes<T, const N: usize> {
     x0: [T; 2],
     /// Of the middle coefficient, of u and of the next interval.
     others: [HalfPlane<T>; 8],
-}
-
-/// What the rows of a segment assume of the law on it.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Assumed<T> {
-    /// X0, X1 and X2 lie in this interval.
-    pub x: [T; 2],
-    /// Where the tangent of sqrt(x) touches.
-    pub touch: T,
-    /// |u| is at most this.
-    pub u: T,
 }
 
 impl<T: RealField + Copy, const N: usize> HalfPlanes<T, N> {

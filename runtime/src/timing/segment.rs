@@ -10,7 +10,6 @@
 //! where p''' is bounded by its Bernstein coefficients and M_9 by majorants (`majorant.rs`). Halves of a segment use the same p, so they
 //! need no dynamics, and the first term falls by eight.
 
-use super::inner::Assumed;
 use super::law::Law;
 use super::limits::Limits;
 use super::majorant::{Bounds, NINE};
@@ -96,6 +95,17 @@ impl<T: RealField + Copy> Bound<T> {
     pub(super) fn x(&self) -> T {
         self.node.min(self.forward).min(self.backward)
     }
+}
+
+/// What the rows of a segment assume of the law on it.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Assumed<T> {
+    /// X0, X1 and X2 lie in this interval.
+    pub x: [T; 2],
+    /// Where the tangent of sqrt(x) touches.
+    pub touch: T,
+    /// |u| is at most this.
+    pub u: T,
 }
 
 /// What a motion can do: at the left end, and the law.

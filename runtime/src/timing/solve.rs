@@ -2,14 +2,14 @@
 
 use super::fault::{TimingError, TimingFault};
 use super::grid;
-use super::inner::{Assumed, HalfPlanes};
+use super::inner::HalfPlanes;
 use super::law::Law;
 use super::limits::Limits;
 use super::model::{JointFriction, PathDynamics};
 use super::outer::{self, NodeBound};
 use super::path::{number, JointPath, Piece};
 use super::polynomial;
-use super::segment::{limit, Interpolation, Node, Segment};
+use super::segment::{limit, Assumed, Interpolation, Node, Segment};
 use super::timed::Timing;
 use crate::linalg::lit;
 use nalgebra::RealField;
