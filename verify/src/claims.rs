@@ -9,7 +9,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use armgen_description::exact::{self, Number};
 
 use crate::element::Element;
-use crate::enclosure::Float;
+use crate::enclosure::{bits_before_the_point, Float};
 use crate::formula::definitions::Definitions;
 use crate::formula::parse::decimal;
 use crate::formula::{Formula, Rational};
@@ -28,14 +28,13 @@ impl Claims {
         Claims::default()
     }
 
-    /// The constants of a generator. It omits a constant that exceeds the maximum length of a formula; the literal then has its decimal value,
-    /// and the function does not equal the equations.
-    pub fn from_numbers(constants: &BTreeMap<String, Vec<Number>>) -> Claims {
-        Claims::read(constants).0
+    /// The constants of a generator. An error if the formula of one exceeds a limit of the checker: without it nothing can be verified.
+    pub fn from_numbers(constants: &BTreeMap<String, Vec<Number>>) -> Result<Claims, String> {
+        Claims::read(constants).map(|(claims, _)| claims)
     }
 
     /// The same with the definitions that the formulas use.
-    fn read(constants: &BTreeMap<String, Vec<Number>>) -> (Claims, Definitions) {
+    fn read(constants: &BTreeMap<String, Vec<Number>>) -> Result<(Claims, Definitions), String> {
         let mut texts = exact::Definitions::default();
         let lists: Vec<(&String, Vec<String>)> = constants
             .iter()
@@ -43,12 +42,10 @@ impl Claims {
             .collect();
         let mut definitions = Definitions::default();
         for (index, text) in texts.texts().iter().enumerate() {
-            // Without a definition, its users are omitted, too.
-            let _ = definitions.define(index, text);
+            definitions.define(index, text, bits_before_the_point)?;
         }
-        let read = |text: &String| definitions.formula(text).ok();
-        let of = |(name, texts): (&String, Vec<String>)| (name.clone(), texts.iter().filter_map(read).collect());
-        (Claims { by_name: lists.into_iter().map(of).collect() }, definitions)
+        let lists = lists.iter().map(|(name, texts)| (name.as_str(), texts.as_slice()));
+        Ok((Claims::with_definitions(lists, &definitions)?, definitions))
     }
 
     /// Formulas without definitions, by function.
@@ -219,7 +216,7 @@ mod tests {
             let path = format!("{}/../{name}.yaml", env!("CARGO_MANIFEST_DIR"));
             let source = Source::new("robot.yaml", std::fs::read_to_string(path).expect("a robot"));
             let generated = armgen_codegen::generate(&source, &Options::default()).0.expect("a module");
-            let (_, definitions) = Claims::read(&generated.constants);
+            let (_, definitions) = Claims::read(&generated.constants).expect("short formulas");
             println!("{name}: {:.4} of what formulas may cost", definitions.spent());
             assert!(definitions.spent() < 0.1, "{name}");
         }

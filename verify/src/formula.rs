@@ -19,6 +19,9 @@ use dashu_int::{IBig, UBig};
 use crate::element::Element;
 use definitions::{Defined, Definition};
 
+/// Maximum number of bits of an exact value.
+pub(crate) const MOST_BITS: usize = 1 << 20;
+
 /// An exact fraction.
 pub type Rational = dashu_ratio::RBig;
 
@@ -97,8 +100,8 @@ impl Formula {
         }
     }
 
-    /// The value for given values of fractions, roots, pi and angles (sine, cosine); `None` without such a value or for a division by 0. `defined`
-    /// caches the values of definitions, for fixed values of the others.
+    /// The value for given values of fractions, roots, pi and angles (sine, cosine); `None` without such a value, for a division by 0, or where a
+    /// number on the way is longer than any number of a robot. `defined` caches the values of definitions, for fixed values of the others.
     pub fn evaluate<E: Element>(
         &self,
         rational: &dyn Fn(&Rational) -> Option<E>,
@@ -108,6 +111,8 @@ impl Formula {
         defined: &Defined<E>,
     ) -> Option<E> {
         let of = |formula: &Formula| formula.evaluate(rational, root, pi, angle, defined);
+        // Definitions can square a fraction again and again.
+        let short = |value: E| (value.bits() <= MOST_BITS).then_some(value);
         match self {
             Formula::Defined(definition) => defined.get(definition, of),
             Formula::Rational(value) => rational(value),
@@ -119,16 +124,16 @@ impl Formula {
             Formula::Arctangent(_) => Some(angle(self)?.0),
             Formula::Sum(terms) => {
                 let (first, rest) = terms.split_first()?;
-                rest.iter().try_fold(of(first)?, |sum, term| Some(sum.plus(&of(term)?)))
+                rest.iter().try_fold(of(first)?, |sum, term| short(sum.plus(&of(term)?)))
             }
             Formula::Product(factors) => {
                 let (first, rest) = factors.split_first()?;
-                rest.iter().try_fold(of(first)?, |product, factor| Some(product.times(&of(factor)?)))
+                rest.iter().try_fold(of(first)?, |product, factor| short(product.times(&of(factor)?)))
             }
             Formula::Power(base, exponent) => {
                 let base = of(base)?;
                 let one = rational(&Rational::ONE)?;
-                let power = (0..exponent.unsigned_abs()).fold(one, |power, _| power.times(&base));
+                let power = (0..exponent.unsigned_abs()).try_fold(one, |power, _| short(power.times(&base)))?;
                 if *exponent < 0 {
                     power.inverse()
                 } else {

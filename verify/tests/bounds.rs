@@ -35,7 +35,7 @@ fn robot_with(name: &str, options: &Options) -> (String, Module, Claims, Manipul
     let generated = common::generate_with(&source, options);
     let module = Module::read(&generated.module).expect("a module");
     let (manipulator, _) = validate::read_for(&source, scalar).0.expect("a valid description");
-    (generated.module, module, Claims::from_numbers(&generated.constants), manipulator)
+    (generated.module, module, Claims::from_numbers(&generated.constants).expect("short formulas"), manipulator)
 }
 
 fn measure(manipulator: &Manipulator, module: &Module, subjects: Vec<Subject>, batches: u64, seed: u64) -> Vec<Seen> {
