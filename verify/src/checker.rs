@@ -577,7 +577,7 @@ impl Odds {
         };
         let literals: Vec<(&Program, Vec<Formula>)> = (module.functions.iter().filter_map(fitting))
             .map(|program| {
-                let values = claims.resolve(&program.name, &program.literals, module.real).values;
+                let values = claims.resolve(&program.name, &program.literals, module.real).values.clone();
                 (program, program.exact_literals(&values))
             })
             .collect();

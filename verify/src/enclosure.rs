@@ -116,7 +116,7 @@ fn interval(formula: &Formula, bits: usize) -> Option<Interval> {
         Formula::Defined(definition) => definition.enclosure(bits, |formula| interval(formula, bits))?,
         Formula::Sum(terms) => {
             let mut sum = exact(IBig::ZERO);
-            for term in terms {
+            for term in terms.iter() {
                 let term = interval(term, bits)?;
                 sum = Interval { low: sum.low + term.low, high: sum.high + term.high };
             }
@@ -124,7 +124,7 @@ fn interval(formula: &Formula, bits: usize) -> Option<Interval> {
         }
         Formula::Product(factors) => {
             let mut product = exact(IBig::ONE << bits);
-            for factor in factors {
+            for factor in factors.iter() {
                 product = multiply(&product, &interval(factor, bits)?, bits);
             }
             product

@@ -70,10 +70,10 @@ pub enum Formula {
     Cosine(Box<Formula>),
     /// The angle in rad whose tangent is this fraction between 0 and 1.
     Arctangent(Rational),
-    /// A sum.
-    Sum(Vec<Formula>),
+    /// A sum. Long ones are copied many times, so that copies share the terms.
+    Sum(Arc<[Formula]>),
     /// A product.
-    Product(Vec<Formula>),
+    Product(Arc<[Formula]>),
     /// An integer power.
     Power(Box<Formula>, i32),
     /// A formula with a definition.
@@ -153,7 +153,7 @@ impl Formula {
         let mut under_root = UBig::ONE;
         let mut factors = Vec::new();
         for formula in formulas {
-            let parts = if let Formula::Product(parts) = formula { parts } else { vec![formula] };
+            let parts = if let Formula::Product(parts) = formula { parts.to_vec() } else { vec![formula] };
             for part in parts {
                 match part {
                     Formula::Rational(value) => scale *= value,
@@ -178,7 +178,7 @@ impl Formula {
         if factors.len() == 1 {
             factors.remove(0)
         } else {
-            Formula::Product(factors)
+            Formula::Product(factors.into())
         }
     }
 
@@ -234,7 +234,7 @@ impl Formula {
                 factor.clone().abs().is_one() && angle.1.replace(sign).is_none()
             }
             Formula::Sum(terms) => terms.iter().all(|term| term.add_turns(factor, angle)),
-            Formula::Product(factors) => match factors.as_slice() {
+            Formula::Product(factors) => match &factors[..] {
                 [Formula::Rational(scale), inner] => inner.add_turns(&(scale * factor), angle),
                 _ => false,
             },
@@ -275,7 +275,7 @@ impl Element for Formula {
             (Formula::Rational(a), Formula::Rational(b)) => Formula::Rational(a + b),
             (zero, other) if zero.is_zero() => other.clone(),
             (other, zero) if zero.is_zero() => other.clone(),
-            (a, b) => Formula::Sum([a.terms(), b.terms()].concat()),
+            (a, b) => Formula::Sum([a.terms(), b.terms()].concat().into()),
         }
     }
     fn minus(&self, other: &Self) -> Self {

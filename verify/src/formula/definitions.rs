@@ -15,7 +15,7 @@ use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
 use dashu_base::BitTest;
 
-use super::{Formula, Root};
+use super::{root_of_rational, Formula, Rational, Root};
 use crate::check::Check;
 use crate::interval::Interval;
 
@@ -117,11 +117,13 @@ pub struct Definitions {
     left: Cell<u64>,
     /// Cache of parsed texts, because most constants occur many times.
     read: RefCell<BTreeMap<String, Formula>>,
+    /// Roots of fractions: each takes a trial division, and an arm has few.
+    roots: RefCell<BTreeMap<Rational, Formula>>,
 }
 
 impl Default for Definitions {
     fn default() -> Definitions {
-        Definitions { list: BTreeMap::new(), left: Cell::new(MOST_WORK), read: RefCell::default() }
+        Definitions { list: BTreeMap::new(), left: Cell::new(MOST_WORK), read: RefCell::default(), roots: RefCell::default() }
     }
 }
 
@@ -135,6 +137,17 @@ impl Definitions {
         let formula = Formula::parse_with(text, self)?;
         self.read.borrow_mut().insert(text.into(), formula.clone());
         Ok(formula)
+    }
+
+    /// The square root of a fraction; a known one costs nothing, another `work`.
+    pub(super) fn root(&self, value: &Rational, work: u64) -> Result<Formula, String> {
+        if let Some(known) = self.roots.borrow().get(value) {
+            return Ok(known.clone());
+        }
+        self.charge(work)?;
+        let root = root_of_rational(value)?;
+        self.roots.borrow_mut().insert(value.clone(), root.clone());
+        Ok(root)
     }
 
     /// The spent fraction of the budget.
