@@ -1,4 +1,4 @@
-//! Prints the tables of errors of docs/sine-and-cosine.md: the largest errors of sine and cosine in units in the last place, by range of angles.
+//! Prints the tables of benches/results/sine-errors.csv: the largest errors of sine and cosine in units in the last place, by range of angles.
 //!
 //!     cargo run --release -p armgen-codegen --example sine_errors [ARGUMENTS [exhaustive]]
 //!

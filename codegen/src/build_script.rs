@@ -37,9 +37,9 @@ pub enum BuildError {
     Description(Source, Diagnostics),
     /// A name that no function has.
     Functions(UnknownFunctions),
-    /// A name that is to be allowed and that no kind of warning has, and what to write.
+    /// A name in `allow` that is no kind of warning, and the suggested name.
     Warning(String, String),
-    /// A function that was asked for and that this arm does not have.
+    /// A requested function that this arm lacks.
     Absent(PathBuf, Absent),
     /// `OUT_DIR` is not set: this is no build script.
     NoOutDir,

@@ -1,4 +1,5 @@
-//! From a valid manipulator to its equations: what is emitted, one concept a file, in `quantities`; beside it what they share.
+//! From a valid manipulator to its equations. `quantities` has the emitted functions, one concept a file; other modules are
+//! shared by them.
 
 pub mod arm;
 pub mod base;

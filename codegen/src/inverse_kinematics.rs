@@ -5,8 +5,8 @@
 //! of a determinant (`general`). The constructions themselves are the building blocks of `armgen-inverse-kinematics`, whose documentation has
 //! the table of classes; here the arrangement of the loop that fits one is found.
 //!
-//! A class is decided exactly: 1e-9 is not 0. What the form of a number leaves open is 0 where its enclosures and its value in a prime field
-//! both say so (`frame`).
+//! A class is decided exactly: 1e-9 is not 0. If its form does not show whether a number is 0, it counts as 0 if its enclosure
+//! contains 0 and its value in a prime field is 0 (`frame`).
 
 mod chain;
 mod classes;
@@ -28,29 +28,29 @@ pub use frame::Frame;
 use chain::Chain;
 use jacobian::Jacobian;
 
-/// How all solutions of an arm are found.
+/// Data of an arm from which all its solutions follow.
 #[derive(Clone, Debug)]
 pub struct InverseKinematics {
-    /// What the target fixes.
+    /// The kind of its target.
     pub target: Target,
     /// The construction with its constants.
     pub construction: Construction,
     /// The class and the exact tests that it passes, for people.
     pub class: String,
-    /// At most so many solutions where they are finitely many.
+    /// The largest number of solutions at a target with finitely many.
     pub most: usize,
-    /// What each bit of a solution's branch says: its place, what is chosen, the names of 0 and of 1.
+    /// The choice behind each bit of a solution's branch: its place, the chosen quantity, the names of 0 and of 1.
     pub choices: Vec<Choice>,
     /// A length of the arm's size, m.
     pub length: Number,
-    /// What is given beside the pose of an arm with one joint more than that asks for.
+    /// The redundancy of an arm with one joint more than its target needs.
     pub redundancy: Option<Redundancy>,
-    /// Of an arm with fewer joints than the pose has rows: its own loop, from joint 1 on, with joints behind the last one that stay at 0. The
-    /// construction is that of the arm with virtual joints, which have to come out 0.
+    /// The arm's own loop, if it has fewer joints than the pose has rows. It starts at joint 1; joints after the arm's last joint
+    /// stay at 0. The construction belongs to the arm with virtual joints, whose values must be 0 in a solution.
     pub own: Option<Arrangement>,
 }
 
-/// What is given beside the pose of an arm with one joint more than that asks for.
+/// The redundancy: a value that the caller gives with the target.
 #[derive(Clone, Debug)]
 pub enum Redundancy {
     /// The value of a joint.
@@ -109,12 +109,13 @@ pub fn of(manipulator: &Manipulator) -> Result<InverseKinematics, String> {
     classify(&completed(chain, target)?, None, target, &length)
 }
 
-/// One joint more than the target asks for: what the description says is given; else the swivel angle where there is one, or the joint that leaves
-/// the cheapest class, of those that do the last one, joints at the ends of the arm before those between.
+/// An arm with one joint more than its target needs. The description can name the given value. Otherwise it is the swivel angle,
+/// if the arm has it, or the joint that leaves the cheapest class. On a tie joints at the ends of the arm precede joints between,
+/// and the last one counts.
 fn redundant(chain: &Chain, target: Target, length: &Number, given: Option<GivenBeside>) -> Result<InverseKinematics, String> {
     let joints = chain.joints.len();
     let with = |joint: usize| {
-        // The turn about the end effector's z axis is behind a last joint that is given, a slide along the last axis before it.
+        // The turn about the end effector's z axis follows a given last joint. A slide along the last axis precedes it.
         let (rest, given) = if target == Target::Pointing {
             completed(chain.clone(), target)?.without(joint)
         } else {
@@ -286,8 +287,9 @@ fn completed(mut chain: Chain, target: Target) -> Result<Chain, String> {
     Ok(chain)
 }
 
-/// The class of an arm with its virtual joints, from which a joint at an end may have been `taken`, whose value is given. Of a position the others
-/// have to move the end effector in three directions: what they leave alone has no postures, or, at the one value that it has, a continuum.
+/// The class of an arm with its virtual joints. A joint at an end may be `taken`: its value is given. For a position the other
+/// joints must move the end effector in three directions. In a direction that they cannot move, a target has no posture, or a
+/// continuum at a single value.
 fn classify(chain: &Chain, taken: Option<&Given>, target: Target, length: &Number) -> Result<InverseKinematics, String> {
     let jacobian = if target == Target::Position { Jacobian::of(chain, taken) } else { None };
     let Some(jacobian) = jacobian.filter(|jacobian| jacobian.rank(3) < chain.joints.len()) else {

@@ -84,9 +84,9 @@ pub struct Generated {
     text: emit::rust::Text,
     origin: Origin,
     notes: Notes,
-    /// The arm that they are of.
+    /// The arm of these equations.
     manipulator: Manipulator,
-    /// Its construction, once it has been asked for.
+    /// Its construction, computed at the first use.
     construction: OnceLock<Result<InverseKinematics, String>>,
 }
 

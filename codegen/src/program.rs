@@ -209,9 +209,9 @@ pub struct Module {
     pub trig: Trig,
     /// The constant angle of turned sums, rad.
     pub turn: Option<Number>,
-    /// How many states the functions for many states take at a time; none: there are no such functions.
+    /// The number of states in a block of the functions for many states; `None` without such functions.
     pub batch: Option<usize>,
-    /// The names of the functions that were asked for; none: all.
+    /// The names of the requested functions; `None` for all.
     pub asked_for: Option<Vec<String>>,
     /// The names of the passes that were not used.
     pub without: Vec<&'static str>,

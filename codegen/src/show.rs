@@ -8,18 +8,18 @@
 //! b11 = 10*cos(q2) + 10763/500
 //! ```
 //!
-//! The other forms are numbered steps, each of which uses only earlier ones. They write out the plain recursion over the links,
+//! The other forms are numbered steps; each step uses only earlier steps. They write out the plain recursion over the links,
 //! and the recursion with the savings of the emitted function. By default a closed form that fits a table is shown, else the form
 //! with the fewest characters. No term is ever left out.
 //!
 //! ```text
 //! show.rs         sheets of quantities
-//! show/item.rs    what can be asked for by name
+//! show/item.rs    items by name
 //! show/derived.rs its entries, derived
 //! show/forms.rs   its matrices, each in a form
 //! show/steps.rs   an expression as numbered steps
 //! show/lines.rs   long formulas in several lines
-//! show/minors.rs  what is left of the minors of a Jacobian that is not square
+//! show/minors.rs  the minors of a Jacobian that is not square, without shared factors
 //! show/json.rs    for programs
 //! show/text.rs    for a terminal
 //! show/latex.rs   for a paper
@@ -117,7 +117,7 @@ pub struct Shown {
     pub factors: Option<Vec<Factor>>,
     /// Digits of constants; none: exactly.
     pub digits: Option<u8>,
-    /// The entries in plain text, once they have been asked for.
+    /// The entries in plain text, computed at the first use.
     text: OnceLock<Formulas>,
 }
 
@@ -142,7 +142,7 @@ pub struct Formulas {
 }
 
 impl Sheet {
-    /// The quantities asked for, each once, in the order of asking: each in its shortest form, with exact constants.
+    /// The requested quantities, each once, in the order of the request, in their shortest form with exact constants.
     pub fn new(model: &Model, items: &[Item], reading: Reading) -> Sheet {
         Sheet::in_style(model, items, reading, Style::default())
     }

@@ -7,7 +7,7 @@ use armgen_codegen::source::Source;
 use armgen_codegen::{validate, Model, Trig};
 use armgen_evaluate::{program, Program};
 
-/// Rounds of which the shortest counts.
+/// The number of rounds. The shortest counts.
 const ROUNDS: usize = 500;
 
 fn main() {

@@ -1,8 +1,8 @@
 //! The functions of an arm, computed in process from its description, without a compiler.
 //!
-//! It hands the programs of `armgen-codegen`, which printers print, to `armgen-numbers`, which executes them. A result has the bits of the
-//! emitted Rust module that has the same scalar and the same sines, if that is not generated with fused operations.
-//! All solutions of inverse kinematics likewise ([`solver`]).
+//! Printers print the programs of `armgen-codegen`; this crate passes them to `armgen-numbers`, which executes them.
+//! A result has the bits of the emitted Rust module with the same scalar and the same sines, unless that has fused operations.
+//! The same holds for all solutions of inverse kinematics ([`solver`]).
 
 mod postures;
 
@@ -20,7 +20,7 @@ use armgen_numbers::{Angle, Function, Input, Operand, Operation, Operator, Outpu
 pub use armgen_numbers::{Mismatch, Program, Workspace};
 pub use postures::{inverse_kinematics, solver};
 
-/// A scalar that programs are executed in.
+/// A scalar of executed programs.
 pub trait Scalar: numbers::Compiled + numbers::postures::Solved {
     /// The scalar nearest to a number.
     fn nearest(number: &Number) -> Self;

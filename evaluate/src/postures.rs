@@ -9,7 +9,7 @@ use crate::Scalar;
 
 /// The inverse kinematics of an arm. Its results have the bits of the emitted module of the same scalar.
 ///
-/// Errors: why the arm has none, for people.
+/// Errors: the reason why the arm has no inverse kinematics, for people.
 pub fn solver<T: Scalar>(manipulator: &Manipulator) -> Result<Solver<T>, String> {
     let found = exact::of(manipulator)?;
     Ok(Solver::new(inverse_kinematics(manipulator, &found)).expect("the parts of a construction fit each other"))

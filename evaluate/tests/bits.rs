@@ -8,7 +8,7 @@ use armgen_tests::emitted::{emitted, Emitted, ALL};
 use armgen_tests::functions::{Arguments, Functions};
 use armgen_tests::random::Random;
 
-/// As many states a call: one, few, a small block, more than a large block and a small one.
+/// Numbers of states in a call: one, few, a small block, more than a large block and a small one.
 const STATES: [usize; 4] = [1, 5, 16, 83];
 
 /// A number of an argument: mostly of a usual size, sometimes a zero, one beyond the range of fast sines, an infinite one, not a number.
@@ -26,7 +26,7 @@ fn bits(values: impl Iterator<Item = f64>) -> Vec<u64> {
     values.map(|value| if value.is_nan() { u64::MAX } else { value.to_bits() }).collect()
 }
 
-/// Compares all functions of a module; how many numbers that was.
+/// Compares all functions of a module, and returns the number of compared entries.
 fn compare<T: Scalar + Into<f64>>(robot: &Emitted, scalar: armgen_codegen::Scalar, nearest: fn(f64) -> T, seed: u64) -> usize {
     let source = Source::new(robot.path, robot.description());
     let (manipulator, places) = validate::read_for(&source, scalar).0.expect("it was generated");

@@ -1,4 +1,4 @@
-//! What is executed against what is compiled.
+//! Executed programs against compiled modules.
 
 #[path = "../../codegen/tests/inverse_kinematics/arms.rs"]
 mod arms;

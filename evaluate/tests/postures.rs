@@ -1,4 +1,4 @@
-//! All postures of an arm, in process: those of the emitted module, bit by bit.
+//! All postures of an arm, computed in process, equal the emitted module's bit by bit.
 
 use std::path::{Path, PathBuf};
 use std::process::Command;
@@ -138,7 +138,7 @@ macro_rules! print {
 }
 "#;
 
-/// A project of emitted modules, run: what it prints.
+/// The output of a project of emitted modules.
 struct Project {
     folder: PathBuf,
     main: String,
@@ -214,7 +214,7 @@ impl Bits for f32 {
     }
 }
 
-/// Solves at every pose of the lines, and compares all that was printed. How many postures that was.
+/// Solves at every pose of the lines, compares the printed postures, and returns their number.
 fn compare<T: Bits>(name: &str, solver: &Solver<T>, lines: &[&str]) -> usize {
     let mut postures = 0;
     for line in lines {
@@ -238,7 +238,7 @@ fn in_both_scalars(name: &str) -> bool {
     ["puma560", "scara4", "parallel", "general", "position3r", "panda7", "table"].contains(&name) || closed.contains(&name)
 }
 
-/// A few arms a project, which are compiled beside each other.
+/// A few arms in each project, whose modules compile in parallel.
 fn have_the_bits_of_emitted_modules(folder: &str, arms: Vec<(String, String)>) {
     for (number, arms) in arms.chunks(8).enumerate() {
         has_the_bits(&format!("{folder}_{number}"), arms);

@@ -13,7 +13,8 @@ const LANES: usize = 8;
 const LARGE: usize = 8;
 const SMALL: usize = 2;
 
-/// Places that take more bytes than this in large blocks do not fit into the second cache of a processor: small blocks are faster then.
+/// Places that take more bytes than this in large blocks do not fit into a processor's second cache. Small blocks are faster
+/// then.
 const CACHE: usize = 256 << 10;
 
 /// The numbers in the places of a program while it runs.
@@ -24,14 +25,14 @@ pub struct Workspace<T> {
     small: Vec<[[T; LANES]; SMALL]>,
 }
 
-/// Why a program does not run: a slice has not the length that it needs.
+/// Reasons why a program does not run. Most are slices of a wrong length.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Mismatch {
-    /// There are not as many arguments as the function has.
+    /// The number of arguments differs from the function's.
     Arguments {
-        /// As many as it has.
+        /// The function's number of arguments.
         expected: usize,
-        /// As many as are given.
+        /// The given number of arguments.
         found: usize,
     },
     /// The result is not a whole number of states.
@@ -41,7 +42,7 @@ pub enum Mismatch {
         /// Its length.
         found: usize,
     },
-    /// An argument has the length neither of one state nor of all.
+    /// An argument's length fits neither one state nor all states.
     Argument {
         /// Its name.
         name: String,
@@ -73,7 +74,7 @@ impl fmt::Display for Mismatch {
 
 impl std::error::Error for Mismatch {}
 
-/// A scalar for which execution is compiled in this crate, with its settings, not with those of a crate that calls it: `f64` and `f32`.
+/// `f64` or `f32`. Execution of both is compiled in this crate, with its settings; a calling crate's settings do not matter.
 pub trait Compiled: Scalar {
     /// Executes all states.
     #[doc(hidden)]
@@ -118,7 +119,7 @@ impl<T: Compiled> Program<T> {
         Ok(())
     }
 
-    /// How many states slices of these lengths hold.
+    /// The number of states in slices of these lengths.
     fn states(&self, arguments: &[&[T]], result: usize) -> Result<usize, Mismatch> {
         let (expected, entries) = (self.arguments(), self.outputs());
         if arguments.len() != expected.len() {
@@ -146,7 +147,8 @@ pub struct Run<'a, T> {
     states: usize,
 }
 
-// Everything here is inlined into the function that has the instructions of the processor; what is not has those of every processor.
+// Everything here is inlined into the function that uses the processor's own instructions. Code that is not inlined cannot use
+// them.
 impl<T: Scalar> Run<'_, T> {
     /// All states, in blocks.
     #[inline(always)]
@@ -173,7 +175,7 @@ impl<T: Scalar> Run<'_, T> {
         }
     }
 
-    /// An entry of `L` states from `first` on; states behind the last one repeat it.
+    /// An entry of `L` states from `first` on. The last state repeats if there are fewer.
     #[inline(always)]
     fn read<const L: usize>(&self, argument: usize, entry: usize, first: usize) -> [T; L] {
         let (given, width) = (self.arguments[argument], self.program.arguments()[argument].length);

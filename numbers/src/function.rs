@@ -28,7 +28,7 @@ pub struct Function<T> {
 pub struct Argument {
     /// Its name.
     pub name: String,
-    /// How many entries it has.
+    /// Its number of entries.
     pub length: usize,
 }
 
@@ -46,7 +46,7 @@ pub struct Result {
 pub enum Sines {
     /// The crate `libm`, angle by angle.
     Libm,
-    /// The standard library, angle by angle: the last bits are those of the platform.
+    /// The standard library, angle by angle. The last bits depend on the platform.
     Std,
     /// Vector instructions, within 1 unit in the last place; large angles as documented in `armgen-elementary`.
     Fast,
@@ -95,7 +95,7 @@ pub enum Input<T> {
     Cosine(usize),
 }
 
-/// What an operation uses.
+/// An operand of an operation.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Operand<T> {
     /// A value by its number.

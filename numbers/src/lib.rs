@@ -1,16 +1,19 @@
 //! Straight-line programs, executed over blocks of states without a compiler, with the bits of compiled code.
 //!
-//! A [`Function`] is plain data: inputs, operations on earlier values and constants, outputs. [`Program::new`] checks it and gives values
-//! places by their last use. [`Program::run`] then computes any number of states: 64 at a time, an operation of all of them before the next
-//! operation, in the vector instructions of this processor. A single state takes the same program with one number in each place.
+//! A [`Function`] is plain data: inputs, operations on earlier values and constants, outputs.
+//! [`Program::new`] checks it and assigns places to values by their last use.
+//! [`Program::run`] then computes any number of states with this processor's vector instructions.
+//! It takes blocks of 64 states and performs each operation on the whole block before the next operation.
+//! A single state runs the same program with one number in each place.
 //!
-//! Every operation rounds by itself, in the order of the function: the bits are those of the same operations compiled, whatever the number of
-//! states and whatever the processor. Sines, cosines and the exponential are the compiled texts of `armgen-elementary`, or `libm`.
+//! Every operation rounds by itself, in the order of the function. The bits therefore equal those of compiled code, for any
+//! number of states and on any processor. Sines, cosines and the exponential are the compiled texts of `armgen-elementary`, or
+//! `libm`.
 //!
-//! All solutions of inverse kinematics are found by the compiled blocks of `armgen-inverse-kinematics` ([`postures`]).
+//! The compiled blocks of `armgen-inverse-kinematics` find all solutions of inverse kinematics ([`postures`]).
 //!
-//! No state makes it panic: what is infinite or not a number goes through all operations as IEEE 754 says. [`Program::run`] allocates
-//! nothing; its [`Workspace`] is made before.
+//! No state causes a panic: infinities and NaN pass through all operations by the rules of IEEE 754. [`Program::run`] allocates
+//! nothing; the caller prepares its [`Workspace`].
 //!
 //! ```
 //! use armgen_numbers::{Argument, Function, Input, Operand, Operation, Operator, Output, Program, Result, Sines};

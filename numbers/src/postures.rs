@@ -1,7 +1,8 @@
 //! All solutions of inverse kinematics: a construction as plain data, and the calls of its compiled blocks.
 //!
-//! The blocks are those of `armgen-inverse-kinematics`, in its order: the loop of the arm at a pose, the construction, what brings its solutions to
-//! the pose, the arm's own order, the verdict. An emitted module has the same calls with its constants, so the bits are the same.
+//! The blocks of `armgen-inverse-kinematics` run in its order: the loop of the arm at a pose, the construction, the refinement of
+//! its solutions, the arm's own order, the verdict. An emitted module makes the same calls with the same constants, so the bits
+//! are equal.
 
 use std::fmt;
 
@@ -17,17 +18,17 @@ pub struct Arrangement<T> {
     pub order: Vec<usize>,
     /// Whether they slide, in the loop's order.
     pub prismatic: Vec<bool>,
-    /// The links behind them; that of place `open` is not read.
+    /// The link after each joint. The entry at place `open` is not read.
     pub links: Vec<Frame<T>>,
     /// The place of the link that depends on the pose.
     pub open: usize,
-    /// It is `before` X `after`, where X is T⁻¹, or T if the loop is read `backward`.
+    /// This link is `before` X `after`, with X = T⁻¹, or T if the loop is read `backward`.
     pub before: Frame<T>,
     /// See `before`.
     pub after: Frame<T>,
     /// Read against the arm's direction.
     pub backward: bool,
-    /// What the loop's joint values have more than the arm's: (cos theta, sin theta), or (d, 0).
+    /// The loop's joint values minus the arm's: (cos theta, sin theta) of the angle, or (d, 0).
     pub offsets: Vec<[T; 2]>,
 }
 
@@ -42,11 +43,11 @@ pub struct Given<T> {
     pub prismatic: bool,
     /// From the joint before it, or the base.
     pub before: Frame<T>,
-    /// To the joint behind it, or the end effector.
+    /// To the joint after it, or the end effector.
     pub after: Frame<T>,
 }
 
-/// What is given beside the pose.
+/// The redundancy: a value that the caller gives with the pose.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Redundancy<T> {
     /// The value of a joint, rad or m.
@@ -74,7 +75,7 @@ pub enum Case {
 }
 
 impl Case {
-    /// The case that a block of `armgen-inverse-kinematics` is for.
+    /// The case of a block of `armgen-inverse-kinematics`.
     pub fn of_block(name: &str) -> Option<Case> {
         Some(match name {
             "regional_elbow" => Case::Elbow,
@@ -120,72 +121,72 @@ pub enum Construction<T> {
     General(Box<[Arrangement<T>; 2]>),
 }
 
-/// How all solutions of an arm are found.
+/// Data of an arm from which all its solutions follow.
 #[derive(Clone, Debug, PartialEq)]
 pub struct InverseKinematics<T> {
     /// Whether each joint of the arm slides.
     pub prismatic: Vec<bool>,
-    /// Whether the orientation is asked for, or the position alone.
+    /// Whether the target includes the orientation. Otherwise it is a position.
     pub orientation: bool,
     /// The construction.
     pub construction: Construction<T>,
-    /// At most so many solutions, where they are finitely many: 1, 2, 4, 8 or 16.
+    /// The largest number of solutions at a pose with finitely many: 1, 2, 4, 8 or 16.
     pub most: usize,
-    /// The names of branches by number; empty where there are none.
+    /// The names of branches by number; empty without branches.
     pub branches: Vec<String>,
     /// The arm's largest length, m.
     pub length: T,
-    /// What is given beside the pose of an arm with one joint more than that asks for.
+    /// The redundancy of an arm with one joint more than the target needs.
     pub redundancy: Option<Redundancy<T>>,
-    /// The loop of the arm's own joints, if the construction has virtual joints that have to come out 0.
+    /// The loop of the arm's own joints, if the construction has virtual joints. Their values must be 0 in a solution.
     pub own: Option<Arrangement<T>>,
 }
 
-/// What is known of all the postures at a pose.
+/// Whether the postures at a pose are all that exist.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Verdict {
     /// These are all.
     Complete,
-    /// None was found, and none is near.
+    /// The pose has no posture, and no pose nearby has any.
     Unreachable,
     /// A change of the pose by its own rounding could change their number.
     NearDouble,
     /// Some joints can move while the end effector stays.
     Continuum,
-    /// The pose has an entry that is not finite, or no rotation where that is asked for.
+    /// The pose has an entry that is not finite, or its rotation matrix is no rotation although the target includes it.
     Invalid,
 }
 
 /// All postures at a pose, in the order of the emitted module.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Postures<T> {
-    /// What is known of them.
+    /// Whether these are all.
     pub verdict: Verdict,
-    /// Where there is none: by how much the construction missed, m; a hint, not a bound. Otherwise 0.
+    /// Without a posture: the distance by which the construction missed, m; a hint, not a bound. Otherwise 0.
     pub miss: T,
     /// Joint variables of one posture after the other: angles in (-pi, pi], rad; lengths, m.
     pub q: Vec<T>,
-    /// Of each posture the number of its branch.
+    /// The branch number of each posture.
     pub branch: Vec<u16>,
-    /// Of each posture whether two solutions meet there.
+    /// Whether two solutions meet at the posture.
     pub double: Vec<bool>,
-    /// Of each posture the joints whose values the construction chose, since some joints can move: bit i is joint i + 1.
+    /// Joints of each posture whose values the construction chose, since some joints can move: bit i is joint i + 1.
     pub free: Vec<u32>,
 }
 
 impl<T> Postures<T> {
-    /// How many there are.
+    /// The number of postures.
     pub fn len(&self) -> usize {
         self.branch.len()
     }
 
-    /// Whether there is none.
+    /// Whether the list is empty.
     pub fn is_empty(&self) -> bool {
         self.branch.is_empty()
     }
 }
 
-/// Why data are no inverse kinematics: which part does not fit the others.
+/// The part of the data that does not fit the other parts.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Unsound(pub &'static str);
 
@@ -197,12 +198,12 @@ impl fmt::Display for Unsound {
 
 impl std::error::Error for Unsound {}
 
-/// Why a call is refused: what is given beside the pose is not what the arm asks for.
+/// The reason for refusing a call: the arm needs a redundancy, or has no use for it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Unfit {
-    /// The arm has one joint more than a pose asks for, and nothing is given.
+    /// The arm has one joint more than the target needs, and the redundancy is missing.
     Missing,
-    /// The arm has no joint more, and something is given.
+    /// The arm has no such joint, but a redundancy is given.
     Unasked,
 }
 
@@ -217,7 +218,7 @@ impl fmt::Display for Unfit {
 
 impl std::error::Error for Unfit {}
 
-/// A scalar for which the calls are compiled in this crate: `f64` and `f32`.
+/// `f64` or `f32`. The calls for both are compiled in this crate.
 pub trait Solved: Scalar {
     /// The construction with the types of its blocks.
     #[doc(hidden)]
@@ -243,18 +244,18 @@ impl<T: Solved> Solver<T> {
         Ok(Solver { table: T::table(&of)?, of })
     }
 
-    /// The data that it was made of.
+    /// The data given to [`Solver::new`].
     pub fn of(&self) -> &InverseKinematics<T> {
         &self.of
     }
 
-    /// All postures q with direct_kinematics(q) = T, as far as the target of the arm asks for T.
+    /// All postures q with direct_kinematics(q) = T, in the rows of the arm's target.
     ///
-    /// - `pose`: T = (R p; 0 1) by rows, of the end effector in the base frame, m. The last row, and the rotation where the position alone is asked
-    ///   for, only have to be finite; else the verdict is `Invalid`.
-    /// - `redundancy`: of an arm with one joint more the value of [`InverseKinematics::redundancy`].
+    /// - `pose`: T = (R p; 0 1) by rows, of the end effector in the base frame, m. An entry that is not finite gives the verdict
+    ///   `Invalid`, as does an R that is no rotation, unless the target is a position. The last row is not used otherwise.
+    /// - `redundancy`: the value of [`InverseKinematics::redundancy`], rad or m, for an arm that has it.
     ///
-    /// Errors: a redundancy is missing, or given to an arm that has none.
+    /// Errors: a missing redundancy, or a redundancy for an arm without it.
     pub fn solve(&self, pose: &[[T; 4]; 4], redundancy: Option<T>) -> Result<Postures<T>, Unfit> {
         match (&self.of.redundancy, redundancy) {
             (Some(_), None) => Err(Unfit::Missing),
@@ -263,8 +264,9 @@ impl<T: Solved> Solver<T> {
         }
     }
 
-    /// The redundancy of a posture, with which [`Solver::solve`] finds it again. None: the arm has none, or `q` has not as many entries as the arm has
-    /// joints.
+    /// The redundancy of a posture, with which [`Solver::solve`] finds the posture again.
+    ///
+    /// Returns `None` for an arm without redundancy, or if the length of `q` differs from the number of joints.
     pub fn redundancy(&self, q: &[T]) -> Option<T> {
         if q.len() != self.of.prismatic.len() {
             return None;

@@ -5,7 +5,7 @@ use std::fmt;
 use crate::function::{Angle, Argument, Function, Input, Operand, Operator, Output, Result as Part, Sines};
 use crate::scalar::Scalar;
 
-/// A function that is ready to be executed.
+/// A function in a form that can be executed.
 #[derive(Clone, Debug)]
 pub struct Program<T> {
     name: String,
@@ -37,7 +37,7 @@ pub(crate) struct Load<T> {
     pub(crate) place: u32,
 }
 
-/// How an entry is used.
+/// The use of an entry.
 #[derive(Clone, Copy, Debug)]
 pub(crate) enum Form<T> {
     Itself,
@@ -106,27 +106,27 @@ pub(crate) struct Instruction<T> {
     pub(crate) k: T,
 }
 
-/// Why a function is no program.
+/// Reasons why a function is no program.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Invalid {
-    /// This operation, or else an output, uses a value that does not stand before it.
+    /// This operation, or an output, uses a value that is not computed before it.
     Value {
-        /// The operation, by its place; none for an output.
+        /// The place of the operation; `None` for an output.
         operation: Option<usize>,
         /// The number of the value.
         value: usize,
     },
-    /// An input is an entry, or a sine or cosine of an angle, that the arguments do not have.
+    /// An input names an entry or an angle that does not exist.
     Input {
         /// The input, by its place.
         input: usize,
     },
-    /// An angle has no terms, begins with a subtraction, or has entries that the arguments do not have.
+    /// An angle has no terms, begins with a subtraction, or names entries that do not exist.
     Angle {
         /// The angle, by its place.
         angle: usize,
     },
-    /// The shapes of the results do not have as many entries as there are outputs.
+    /// The number of outputs differs from the number of entries in the results.
     Shapes {
         /// Entries of the shapes.
         entries: usize,
@@ -173,7 +173,7 @@ impl<T> Draft<T> {
 impl<T: Scalar> Program<T> {
     /// The program of a function.
     ///
-    /// Errors: the function uses what does not exist, or its shapes are not those of its outputs.
+    /// Errors: a name of something that does not exist, or shapes that do not match the outputs.
     pub fn new(function: &Function<T>) -> Result<Self, Invalid> {
         check(function)?;
         let inputs = function.inputs.len();
@@ -247,7 +247,7 @@ impl<T: Scalar> Program<T> {
         &self.results
     }
 
-    /// How many entries its result has.
+    /// The number of entries of its result.
     pub fn outputs(&self) -> usize {
         self.stores.len()
     }
@@ -396,7 +396,7 @@ fn with_outputs<T: Scalar>(
     (drafts, outputs)
 }
 
-/// The instruction that uses each value last; one behind all of them for outputs, none for what nothing uses.
+/// The last instruction that uses each value: `usize::MAX` for an output, `None` for an unused value.
 fn last_uses<T>(drafts: &[Draft<T>], outputs: &[(usize, bool)], values: usize) -> Vec<Option<usize>> {
     let mut last = vec![None; values];
     for (time, draft) in drafts.iter().enumerate() {
@@ -427,7 +427,7 @@ impl Places {
         self.is_held[value] = true;
     }
 
-    /// Releases the place of a value; a second time, of an operand that stands twice in an instruction, does nothing.
+    /// Releases the place of a value. A second release, of an operand that an instruction uses twice, does nothing.
     fn release(&mut self, value: usize) {
         if std::mem::take(&mut self.is_held[value]) {
             self.free.push(self.of[value]);

@@ -9,11 +9,15 @@
 //! | [`Robust`] | the same with y + w, w bounded by the uncertainty | Sect. 8.5.3 |
 //! | [`Adaptive`] | u = Y(q, dq, dq_r, ddq_r) pi^ + tau_known + F_l^ + K_D sigma, pi^ adapted | Sect. 8.5.4 |
 //! | [`OperationalSpace`] | u = B^ y + n^, y = J^+ (a_d + K_D de + K_P e + K_I int e - dJ dq) | Sect. 8.6.2 |
+//! | [`Impedance`] | u = g^ + J' (K e + D de) + B^ ddq_r + C^ dq_r | Sect. 9.3 |
+//! | [`HandGuiding`] | u = g^ - D dq + walls + hold | |
 //!
 //! with e = q_d - q (or the pose error of the task), de its derivative. Gains are diagonal, hence positive definite where every
 //! element is positive; the constructors check it. A controller holds gains, no robot and no clock: the caller owns the loop and
-//! passes the model, the reference and the measurement of each sample. Only [`Adaptive`] and [`OperationalSpace`] have a controller state,
-//! advanced by forward Euler after the torque is computed.
+//! passes the model, the reference and the measurement of each sample. Only [`Adaptive`] and [`OperationalSpace`] have a controller state
+//! that is advanced by forward Euler after the torque is computed; [`HandGuiding`] drags the anchor of its hold.
+//!
+//! [`Admittance`] is for arms that take positions: a measured force moves their reference.
 //!
 //! Each has a method `torque`; the trait [`Controller`] is their common interface, for a loop that runs any of them.
 //!
@@ -47,6 +51,10 @@
 //! ```
 
 mod adaptive;
+mod admittance;
+mod friction;
+mod hand_guiding;
+mod impedance;
 mod inverse_dynamics;
 mod limits;
 mod operational_space;
@@ -54,6 +62,10 @@ mod pd;
 mod robust;
 
 pub use adaptive::{Adaptive, Interval};
+pub use admittance::Admittance;
+pub use friction::FrictionCompensation;
+pub use hand_guiding::{HandGuiding, Walls};
+pub use impedance::Impedance;
 pub use inverse_dynamics::InverseDynamics;
 pub use limits::TorqueLimits;
 pub use operational_space::{NullSpace, OperationalSpace};
@@ -81,6 +93,8 @@ pub enum ControlError {
     TorqueNotFinite,
     /// The damped inverse gave no joint acceleration: Jacobian or gains are beyond the range of the scalar.
     AccelerationNotFinite,
+    /// The inertia matrix of the model is not positive definite.
+    Inertia,
     /// The next estimate or integral would be infinite or NaN: gains or model are beyond the range of the scalar.
     StateNotFinite,
 }
@@ -91,6 +105,7 @@ messages! { ControlError,
     ControlError::Singular => "the Jacobian of the task has lost rank: allow damping, or keep away from singular postures";
     ControlError::TorqueNotFinite => "the torque is infinite or NaN: gains or model are beyond the range of the scalar";
     ControlError::AccelerationNotFinite => "the damped inverse gives no joint acceleration: Jacobian or gains are beyond the range of the scalar";
+    ControlError::Inertia => "the inertia matrix of the model is not positive definite";
     ControlError::StateNotFinite => "the next estimate or integral is infinite or NaN: gains or model are beyond the range of the scalar";
 }
 
@@ -146,6 +161,17 @@ controller!(InverseDynamics<R::Real, N>, Dynamics<N>, JointReference<R::Real, N>
 controller!(Robust<R::Real, N>, Dynamics<N>, JointReference<R::Real, N>);
 controller!(Adaptive<R::Real, N, P>, Regressor<N, P>, JointReference<R::Real, N>, P);
 controller!(OperationalSpace<R::Real, N, M>, Dynamics<N>, OperationalReference<R::Real>, M);
+controller!(Impedance<R::Real, N, M>, Dynamics<N>, OperationalReference<R::Real>, M);
+
+/// A hand leads the arm, so there is no reference.
+impl<R: Dynamics<N>, const N: usize> Controller<R, N> for HandGuiding<R::Real, N> {
+    type Reference = ();
+
+    #[inline]
+    fn torque(&mut self, model: &R, (): &(), measured: &State<R::Real, N>) -> Result<Torque<R::Real, N>, ControlError> {
+        HandGuiding::torque(self, model, measured)
+    }
+}
 
 fn check<T: RealField + Copy, const N: usize>(measured: &State<T, N>, reference_is_finite: bool) -> Result<(), ControlError> {
     if !measured.is_finite() {

@@ -20,6 +20,7 @@ pub use nalgebra;
 mod message;
 
 pub mod clik;
+pub mod contact;
 pub mod control;
 
 pub mod inverse_kinematics;

@@ -45,6 +45,26 @@ pub enum Setting {
     Period,
     /// Initial estimate.
     Estimate,
+    /// Stiffness, N/m or N m/rad.
+    Stiffness,
+    /// Damping ratio.
+    DampingRatio,
+    /// w_0, below which a direction counts as that of a singular posture, 1/s.
+    SlowestDirection,
+    /// The share of friction that is compensated.
+    FrictionShare,
+    /// The rate from which on friction is compensated, rad/s or m/s.
+    FrictionLayer,
+    /// The width of a wall before a joint limit.
+    WallWidth,
+    /// The force that a hold bears.
+    HoldForce,
+    /// The mass of an admittance.
+    Mass,
+    /// The gain of an observer, 1/s; below 1/T.
+    ObserverGain,
+    /// A part of the threshold of an observer.
+    Threshold,
 }
 
 impl core::fmt::Display for Setting {
@@ -68,6 +88,16 @@ impl core::fmt::Display for Setting {
             Setting::TorqueLimit => "the torque limits",
             Setting::Period => "the sampling period",
             Setting::Estimate => "the initial estimate",
+            Setting::Stiffness => "the stiffness",
+            Setting::DampingRatio => "the damping ratio",
+            Setting::SlowestDirection => "w_0",
+            Setting::FrictionShare => "the share of friction (or of 0.9 less it)",
+            Setting::FrictionLayer => "the rate of full friction compensation",
+            Setting::WallWidth => "the widths of the walls",
+            Setting::HoldForce => "the forces of the hold",
+            Setting::Mass => "the mass",
+            Setting::ObserverGain => "the gains of the observer (or 1 less their product with the period)",
+            Setting::Threshold => "the threshold",
         })
     }
 }

@@ -17,6 +17,9 @@
 //! row, without estimate and integral rests off its reference, where its error compensates the model error ([`LineariseAtRest`],
 //! [`Rest`]). A start from another estimate is a transient, not a verdict ([`analyse_start`]).
 //!
+//! A joint that a hand leads ([`HandGuiding`](crate::control::HandGuiding)) rests wherever it is let go: nothing pulls it back. Its position
+//! is no state either, and its rate is. Where a wall or a hold pulls it back, both are.
+//!
 //! This proves that small deviations from rest die away at these postures. It proves nothing about a motion, in which Y(q, dq,
 //! dq_r, ddq_r) excites more than rest does, nor about a start far from the true parameters. A [`MotionAnalysis`] examines these.
 //!
@@ -39,6 +42,7 @@
 //! }
 //! ```
 
+mod by_differences;
 mod delay;
 mod difference;
 mod eigenvalues;
@@ -49,6 +53,7 @@ mod motion;
 mod rest;
 mod sampled_loop;
 
+pub use by_differences::ByDifferences;
 pub use delay::Delay;
 pub use error::StabilityError;
 pub use feedback::{Feedback, Linearise, LineariseAtRest, Rest};

@@ -8,8 +8,11 @@ use armgen_runtime::{
         Clik, DampedLeastSquares, Integration, JacobianInverse, JacobianTranspose, JointLimits, JointRangeDistance,
         Manipulability, PseudoInverse,
     },
-    control::{Adaptive, BoundaryLayer, Interval, InverseDynamics, NullSpace, OperationalSpace, PdGravity, Robust, TorqueLimits},
-    linalg::Damping,
+    control::{
+        Adaptive, Admittance, BoundaryLayer, FrictionCompensation, HandGuiding, Impedance, Interval, InverseDynamics, NullSpace,
+        OperationalSpace, PdGravity, Robust, TorqueLimits, Walls,
+    },
+    linalg::{quadratic_program, Damping},
     manipulability::{
         condition_number, distance_to_singularity, force_ellipsoid, manipulability, manipulability_gradient, velocity_ellipsoid,
     },
@@ -104,6 +107,36 @@ fn operational_space_controllers() {
         }
     }
     assert_eq!(errors, 7 + 8, "the plain one errs at the singular posture, too");
+}
+
+#[test]
+fn laws_for_hands() {
+    let model = ghost::nominal();
+    let null_space = NullSpace::new([10.0; 4], [10.0; 4], [0.0; 4]).unwrap();
+    let friction = FrictionCompensation::new(0.5, 0.01).unwrap();
+    let impedance = Impedance::new(ghost::task(), [1e3; 4], 0.7).unwrap().with_null_space(null_space);
+    let impedance = impedance.with_friction_compensation(friction).with_slowest(3.0).unwrap();
+    let walls = Walls::new([-3.0, -2.6, 0.0, -6.0], [3.0, 2.6, 0.45, 6.0], [0.1; 4], [100.0; 4], [1.0; 4]).unwrap();
+    let guiding = HandGuiding::new([10.0; 4]).unwrap().with_walls(walls).with_friction_compensation(friction);
+    let mut guiding = guiding.with_hold([2.0; 4], [100.0; 4], [1.0; 4]).unwrap().with_speed_cap([1.0; 4], [5.0; 4]).unwrap();
+    let mut admittance = Admittance::new(ghost::task(), [1.0; 4], [10.0; 4], [100.0; 4], 1e-3).unwrap();
+    let good = ghost::ghost::<f64>().sample(Duration::from_millis(4321));
+    let mut bad = good;
+    bad.pose.rotation[(1, 1)] = f64::NAN;
+    let mut errors = 0;
+    for measured in states() {
+        errors += usize::from(none("guiding", || guiding.torque(&model, &measured)).is_err());
+        for reference in [good, bad] {
+            errors += usize::from(none("impedance", || impedance.torque(&model, &reference, &measured)).is_err());
+            errors += usize::from(none("admittance", || admittance.step(&reference, &measured.q)).is_err());
+        }
+    }
+    assert_eq!(errors, 2 + 7 + 6, "two states are broken for guiding and the impedance, one force for the admittance");
+    let h = nalgebra::Matrix4::identity();
+    let rows = -nalgebra::Matrix4::identity();
+    none("a program", || quadratic_program(&h, &vector![-1.0, 2.0, -3.0, 4.0], &rows, &vector![-0.5, -0.5, -0.5, -0.5])).unwrap();
+    none("no point", || quadratic_program(&h, &vector![0.0, 0.0, 0.0, 0.0], &(rows * 0.0), &vector![1.0, 0.0, 0.0, 0.0]))
+        .unwrap_err();
 }
 
 #[test]

@@ -5,8 +5,8 @@ use crate::common;
 use armgen_runtime::{
     clik::{Clik, Integration, JacobianInverse, JointLimits, Outcome, WithinRange},
     control::{
-        Adaptive, BoundaryLayer, ControlError, Interval, InverseDynamics, NullSpace, OperationalSpace, PdGravity, Robust,
-        TorqueLimits,
+        Adaptive, Admittance, BoundaryLayer, ControlError, FrictionCompensation, HandGuiding, Impedance, Interval,
+        InverseDynamics, NullSpace, OperationalSpace, PdGravity, Robust, TorqueLimits, Walls,
     },
     linalg::{Damping, DampingError, Limited},
     reference::{JointReference, OperationalReference, Pose, State},
@@ -45,6 +45,22 @@ fn gains_are_checked() {
     assert_eq!(operational([0.0; 4], NAN).err(), finite(Setting::Period, 0));
     assert_eq!(operational([0.0; 4], 1e-3).unwrap().with_integral_limit([-1.0; 4]).err(), positive(Setting::IntegralLimit, 0));
     assert_eq!(NullSpace::new([0.0, 0.0], [1.0, 0.0], [0.0; 2]).err(), positive(Setting::NullSpace, 1));
+    let impedance = |k, ratio| Impedance::<f64, 4, 4>::new(ghost::task(), k, ratio);
+    assert_eq!(impedance([1.0, 1.0, 0.0, 1.0], 0.7).err(), positive(Setting::Stiffness, 2));
+    assert_eq!(impedance([1.0; 4], 0.0).err(), positive(Setting::DampingRatio, 0));
+    assert_eq!(impedance([1.0; 4], 0.7).unwrap().with_damping([1.0, NAN, 1.0, 1.0]).err(), finite(Setting::Derivative, 1));
+    assert_eq!(impedance([1.0; 4], 0.7).unwrap().with_slowest(-1.0).err(), positive(Setting::SlowestDirection, 0));
+    assert_eq!(FrictionCompensation::new(1.0, 0.01).err(), positive(Setting::FrictionShare, 0));
+    assert_eq!(FrictionCompensation::new(0.9, 0.0).err(), positive(Setting::FrictionLayer, 0));
+    assert_eq!(HandGuiding::new([1.0, 0.0]).err(), positive(Setting::Derivative, 1));
+    assert_eq!(HandGuiding::new(one).unwrap().with_hold([1.0, 0.0], one, one).err(), positive(Setting::HoldForce, 1));
+    assert_eq!(HandGuiding::new(one).unwrap().with_speed_cap([NAN, 0.0], one).err(), finite(Setting::RateLimit, 0));
+    // The walls of the second joint meet.
+    assert_eq!(Walls::new([0.0; 2], [1.0, 0.2], [0.1; 2], one, one).err(), positive(Setting::PositionLimit, 1));
+    assert!(Walls::new([f64::NEG_INFINITY; 2], [1.0; 2], [0.1; 2], one, one).is_ok());
+    let admittance = |m, k| Admittance::<f64, 4>::new(ghost::task(), m, [1.0; 4], k, 1e-3);
+    assert_eq!(admittance([1.0, 0.0, 1.0, 1.0], [0.0; 4]).err(), positive(Setting::Mass, 1));
+    assert_eq!(admittance([1.0; 4], [0.0, 0.0, 0.0, -1.0]).err(), positive(Setting::Stiffness, 3));
     assert_eq!(TorqueLimits::new([1.0, 0.0]).err(), positive(Setting::TorqueLimit, 1));
     assert_eq!(JointLimits::rates([1.0, NAN]).err(), finite(Setting::RateLimit, 1));
     assert_eq!(JointLimits::rates(one).unwrap().with_range([0.0, 1.0], [1.0, 1.0]).err(), positive(Setting::PositionLimit, 1));
@@ -117,6 +133,8 @@ fn a_broken_measurement_gives_an_error_and_never_a_torque() {
     let robust = Robust::new([1e3; 4], [10.0; 4], [1.0; 4], [1.0; 4], BoundaryLayer { rho: 10.0, epsilon: 0.2 }).unwrap();
     let mut adaptive = Adaptive::new([500.0; 4], [10.0; 4], [10.0; 14], NOMINAL, 1e-3).unwrap();
     let mut operational = OperationalSpace::new(ghost::task(), [1e3; 4], [10.0; 4], [10.0; 4], 1e-3).unwrap();
+    let impedance = Impedance::new(ghost::task(), [1e3; 4], 0.7).unwrap();
+    let mut guiding = HandGuiding::new([10.0; 4]).unwrap().with_hold([5.0; 4], [100.0; 4], [1.0; 4]).unwrap();
     let (controller_state, integral) = (*adaptive.estimate(), *operational.integral());
     let lost = Some(ControlError::MeasurementNotFinite);
     for measured in broken() {
@@ -125,12 +143,18 @@ fn a_broken_measurement_gives_an_error_and_never_a_torque() {
         assert_eq!(robust.torque(&model, &rest, &measured).err(), lost);
         assert_eq!(adaptive.torque(&model, &rest, &measured).err(), lost);
         assert_eq!(operational.torque(&model, &pose, &measured).err(), lost);
+        assert_eq!(impedance.torque(&model, &pose, &measured).err(), lost);
+        assert_eq!(guiding.torque(&model, &measured).err(), lost);
     }
+    assert_eq!(guiding.anchor(), None);
     // Beyond the range of the scalar: no torque either.
     let wild = State { q: ghost::start(), dq: Vector4::repeat(1e200) };
     assert_eq!(inverse.torque(&model, &rest, &wild).err(), Some(ControlError::TorqueNotFinite));
     assert_eq!(adaptive.torque(&model, &rest, &wild).err(), Some(ControlError::StateNotFinite));
     assert_eq!(operational.torque(&model, &pose, &wild).err(), Some(ControlError::TorqueNotFinite));
+    let beyond = State { q: ghost::start(), dq: Vector4::repeat(1e308) };
+    assert_eq!(guiding.torque(&model, &beyond).err(), Some(ControlError::TorqueNotFinite));
+    assert_eq!(guiding.anchor(), None);
     // Nothing of it stays in the controller state.
     assert_eq!(adaptive.estimate(), &controller_state);
     assert_eq!(operational.integral(), &integral);

@@ -1,7 +1,7 @@
 //! The arm as the derivations see it: joint frames, bodies, rotors, friction, all as expressions of one pool.
 //!
-//! All recursions run in joint frames, whose z axis is the joint axis, whatever convention the description uses: a vector then turns
-//! by Rz(q) alone, and the parameters of a body fall into those that joint i feels and those that it hands on.
+//! All recursions run in joint frames, whose z axis is the joint axis, whatever convention the description uses. A vector then
+//! turns by Rz(q) alone, and joint i either feels a parameter of a body or passes it to the link before.
 //!
 //! ```text
 //! R_i = fixed_i · Rz(theta_i),   fixed_i = Rx(alpha) for Denavit-Hartenberg rows,   theta_i = q_i + offset
@@ -86,7 +86,7 @@ pub struct Joint {
     pub load: ExprId,
     /// Stribeck friction at the lowest rates.
     pub stribeck: ExprId,
-    /// The rate at which 1/e of it is left; 1 where there is none.
+    /// The rate at which Stribeck friction has fallen to 1/e; 1 without such friction.
     pub stribeck_velocity: ExprId,
     /// Stiffness of its spring.
     pub stiffness: ExprId,
@@ -243,7 +243,7 @@ impl Joint {
 }
 
 impl Arm {
-    /// The arm in a pool, its quantities as `view` says.
+    /// The arm in a pool. `view` decides how parameters enter.
     pub fn new(pool: &mut Pool, manipulator: &Manipulator, view: View<'_>) -> Arm {
         let joints = (0..manipulator.joints.len()).map(|i| joint(pool, manipulator, view, i)).collect();
         let gravity = if manipulator.gravity_is_argument {
@@ -342,12 +342,12 @@ impl Arm {
         }
     }
 
-    /// Hands on to the parent what a joint does not feel, exactly (Gautier and Khalil 1990, "Direct calculation of minimum set of
-    /// inertial parameters of serial robots", in second-moment form).
+    /// Moves parameters that a joint does not feel to the parent, exactly (Gautier and Khalil 1990, "Direct calculation of
+    /// minimum set of inertial parameters of serial robots", in second-moment form).
     ///
     /// A mass on the axis of a revolute joint, its moment and second moment along the axis, look the same to the parent whatever the
-    /// joint angle, and joint i does not feel them: m, hz and Szz move to the parent. The second moments of a link behind a prismatic
-    /// joint never change their direction: all six move. What reaches the base is dropped.
+    /// joint angle, and joint i does not feel them: m, hz and Szz move to the parent. A prismatic joint never turns the second
+    /// moments of its link: all six move. Parameters that reach the base are dropped.
     ///
     /// How much second moment along the axis moves is free: all of Szz ([`GroupingConvention::NoSecondMomentAlongAxis`]), which leaves the least
     /// work, or Iyy = Sxx + Szz, which leaves the base parameters of the literature ([`GroupingConvention::NoInertiaAboutY`]).

@@ -285,7 +285,7 @@ fn minors(system: &[Vec<Number>], columns: &[usize]) -> Number {
     of_set.pop().expect("the full set")
 }
 
-/// a/b; as a fraction where it is one, however a and b are written.
+/// a/b; as a fraction if the value is a fraction, however a and b are written.
 fn quotient(field: &mut Field, a: &Number, b: &Number) -> Number {
     let value = a.checked_div(b).expect("the divisor is not zero");
     if value.terms().count() == 1 && b.terms().count() == 1 {
@@ -344,8 +344,8 @@ pub fn base_regressor(pool: &mut Pool, arm: &Arm, vector: &ParameterVector, plan
 
 /// The base parameters of an arm.
 ///
-/// What no joint feels is first grouped towards the base in joint frames, exactly and without a division. What still depends on others
-/// then, because a motion near the base is restricted or a rotor turns with a link, is found by rank.
+/// Parameters that no joint feels are first grouped towards the base in joint frames, exactly and without a division. The rank
+/// then shows the remaining dependences, where a motion near the base is restricted or a rotor turns with a link.
 pub fn base_parameters(manipulator: &Manipulator, field: &Field) -> ParameterVector {
     grouped(manipulator, field, GroupingConvention::NoInertiaAboutY, false)
 }
@@ -419,9 +419,11 @@ fn combined(
     (ParameterVector { entries, kind: ParameterKind::Base(kept) }, combinations)
 }
 
-/// The rows of friction below those of all other torques. On a slide that gravity acts along, the torque of a mass less that of an armature
-/// is constant, and so is the torque of an offset of friction: a motion cannot tell the three apart, but a friction that holds part of the
-/// weight is none, and `gravity_with` and `friction_with` take them one by one.
+/// The rows of friction below the rows of all other torques.
+///
+/// Gravity may act along a prismatic joint. Then the torque of a mass minus the torque of an armature is constant, as is an
+/// offset of friction. A motion cannot distinguish the three, but friction must not hold part of the weight: `gravity_with` and
+/// `friction_with` take them one by one.
 fn with_friction_apart(y: &[Vec<ExprId>], columns: &[StandardParameter]) -> Vec<Vec<ExprId>> {
     let rows = |friction: bool| {
         y.iter().map(move |row| {
@@ -525,7 +527,8 @@ fn shown(number: &Number) -> String {
     }
 }
 
-/// A base parameter: named like the standard parameter that it is, with an R where it stands in the joint frame or others are regrouped into it.
+/// A base parameter. It has the name of its standard parameter, with an R if it belongs to the joint frame or contains regrouped
+/// parameters.
 fn entry(parameter: StandardParameter, standard: &ParameterVector, coefficients: &[Number]) -> Parameter {
     let mut nominal = Number::zero();
     let mut meaning = String::new();

@@ -1,8 +1,8 @@
 //! How the wrench of a column reaches the joints between it and the base.
 //!
 //! Column j of B is what each ancestor i of joint j feels of ∂x/∂q_j over all that joint j carries: a force f and a moment n about a
-//! point, handed from link to link. C hands on the wrench (F, N) of the rate of ∂x/∂q_j and the moment E as well (`coriolis.rs`). With
-//! d from o_i to the point that the moments are about,
+//! point, passed from link to link. C passes on the wrench (F, N) of the rate of ∂x/∂q_j and the moment E as well
+//! (`coriolis.rs`). With d from o_i to the point that the moments are about,
 //!
 //! ```text
 //! B_ij = z_i · (n + d × f),   C_ij = z_i · (N + d × F),   C_ji = dz_i/dt · n + z_i · E + d(z_i × d)/dt · f      (joint i revolute)
@@ -12,9 +12,11 @@
 //! E is kept relative to a rotating frame, E + n × Ω with Ω the angular velocity of the link that E is relative to: relative to link i
 //! itself the term dz_i/dt · n is gone. Moved by d it gains d' × f - d × (Ω × f), d' the rate of d in that frame.
 //!
-//! From one link to the next there are three ways: shift the moments to the new origin in the new axes (way 0) or before turning, in
-//! the old axes (way 1), which saves turning a force that nothing needs any more; or keep them about the old point (way 2), which pays where
-//! only one component is asked for on the way.
+//! There are three ways from one link to the next:
+//!
+//! - way 0 shifts the moments to the new origin in the new axes;
+//! - way 1 shifts them in the old axes, before turning, and so need not turn a force that is not used again;
+//! - way 2 keeps them about the old point, which saves operations if only one component is used on the way.
 
 use std::collections::BTreeMap;
 

@@ -5,7 +5,7 @@ use crate::exact::Number;
 use crate::manipulator::Manipulator;
 use crate::ring::field::Field;
 
-/// A field that has the roots of a valid arm's constants, and the sine and cosine of the angle by which its last link may be turned.
+/// A field with the roots of a valid arm's constants, and with the sine and cosine of the angle that may turn its last link.
 pub fn field_of(manipulator: &Manipulator) -> Field {
     let plain = find_field(manipulator).expect("validation refuses an arm without a field");
     let turn = passes::angle_of_last_link(&plain, manipulator);

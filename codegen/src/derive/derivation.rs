@@ -38,8 +38,8 @@ impl Derivation {
         self.pool.all_normal_forms(&self.entries, CLOSED_FORM_TERMS)
     }
 
-    /// The derivations from the closed form, if there is one: one for each order in which its products can be formed, and the same in
-    /// the rates of links with parallel axes about these.
+    /// The derivations from the closed form, if it exists: one for each order of its products, and the same in the rates of links
+    /// about parallel axes.
     pub fn by_closed_form(&self) -> Vec<Derivation> {
         let (all, joints) = self.pool.with_gravity(&self.entries);
         let Some(forms) = self.pool.all_normal_forms(&all, CLOSED_FORM_TERMS) else { return Vec::new() };
@@ -63,8 +63,8 @@ impl Derivation {
         all
     }
 
-    /// The closed forms in which the rate and the acceleration of a joint stand for those of its link about the axis that it shares with
-    /// links before it: dq_i -> ±(w_i - w_p). Squares of sums of rates then stay squares.
+    /// The closed forms in absolute rates: w_i is the rate of link i about the axis that it shares with links before it, and
+    /// dq_i = ±(w_i - w_p). Accelerations likewise. Squares of sums of rates then stay squares.
     fn forms_in_absolute_rates(&self) -> Option<Vec<NormalForm>> {
         if self.parallel.iter().all(Option::is_none) {
             return None;

@@ -5,8 +5,8 @@
 //! ```
 //!
 //! The determinant is expanded by minors, each set of columns once. Joint variables that it does not depend on, which their zero
-//! derivative proves, are set to 0 first. What is left is factored as far as single joint variables go: seen as a polynomial in one
-//! variable, with the other harmonics as coefficients' carriers, its content in that variable is the greatest common divisor of
+//! derivative proves, are set to 0 first. The rest is factored as far as single joint variables allow. It is a polynomial in one
+//! variable, whose coefficients contain the other harmonics. Its content in that variable is the greatest common divisor of
 //! univariate polynomials, in tan(q/2) for an angle.
 
 use std::collections::{BTreeMap, BTreeSet};
@@ -54,7 +54,7 @@ pub enum Zeros {
     Never,
     /// At every q.
     Everywhere,
-    /// Where the parameters that alone stand in it make it so.
+    /// For some values of parameters: the factor contains parameters alone.
     OfParameters,
     /// At values of one joint variable: `q2 = 0 mod pi`, in plain text and in LaTeX.
     Of([String; 2]),
@@ -167,7 +167,7 @@ fn factors(model: &Model, form: &NormalForm) -> Vec<Factor> {
     found.into_iter().map(|(form, zeros)| Factor { form, zeros }).collect()
 }
 
-/// The contents that some forms share in single variables, with their zeros, and what is left of each form.
+/// The contents that some forms share in single variables, with their zeros, and each form divided by them.
 fn contents(model: &Model, mut rest: Vec<NormalForm>) -> (Vec<(NormalForm, Zeros)>, Vec<NormalForm>) {
     let mut found = Vec::new();
     let angles: BTreeSet<u16> = rest.iter().flat_map(NormalForm::angles).collect();
@@ -181,7 +181,7 @@ fn contents(model: &Model, mut rest: Vec<NormalForm>) -> (Vec<(NormalForm, Zeros
     (found, rest)
 }
 
-/// The joints whose displacements stand in a form.
+/// The joints whose displacements occur in a form.
 fn positions(form: &NormalForm) -> Vec<u16> {
     let all = form.terms().flat_map(|(_, factors, _)| factors);
     let all: BTreeSet<u16> = all.filter_map(|(s, _)| if let Symbol::Position(i) = s { Some(*i) } else { None }).collect();
@@ -201,7 +201,7 @@ fn zeros_without_joints(form: &NormalForm) -> Zeros {
     }
 }
 
-/// The content of some forms in one variable, in factors with their zeros, and the quotients; `None` if there is none.
+/// The content of some forms in one variable, in factors with their zeros, and the quotients; `None` without a common factor.
 fn content(model: &Model, forms: &[NormalForm], variable: Variable) -> Option<(Vec<(NormalForm, Zeros)>, Vec<NormalForm>)> {
     let groups: Vec<_> = forms.iter().map(|form| split(form, variable)).collect();
     let all = || groups.iter().flat_map(BTreeMap::values);
@@ -382,7 +382,7 @@ fn zeros(form: &NormalForm, variable: Variable, polynomial: &Univariate) -> Zero
     }
 }
 
-/// ` mod 2 pi`, with what stands before pi.
+/// ` mod 2 pi`; the factor before pi is an argument.
 fn modulo(printer: &Printer<'_>, factor: &str) -> String {
     match (printer.notation, factor) {
         (Notation::Text, "") => " mod pi".into(),

@@ -6,7 +6,7 @@
 //! M^-1 = W' D^-1 W,   W = L^-1
 //! ```
 //!
-//! One reciprocal per row; entries that are identically zero leave no work behind.
+//! One reciprocal per row; entries that are identically zero cost no operation.
 
 use crate::ring::{ExprId, Pool};
 

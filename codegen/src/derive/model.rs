@@ -7,7 +7,7 @@ use super::{base, constants, parameter_vector};
 use crate::manipulator::Manipulator;
 use crate::ring::field::Field;
 
-/// What the dimensions of an arm's quantities depend on.
+/// Numbers of an arm that determine the dimensions of its quantities.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Sizes {
     /// Number of joints.
@@ -29,7 +29,7 @@ pub struct Model {
     pub field: Field,
     /// The parameter vector that its `regressor` chooses.
     pub parameters: ParameterVector,
-    /// Its base parameters, found when first asked for.
+    /// Its base parameters, computed at the first use.
     base: OnceLock<ParameterVector>,
 }
 
@@ -46,7 +46,7 @@ impl Model {
         self.base.get_or_init(|| base::base_parameters_with_rotors(&self.manipulator, &self.field))
     }
 
-    /// What the dimensions of the quantities depend on.
+    /// The numbers that determine the dimensions of the quantities.
     pub fn sizes(&self) -> Sizes {
         self.sizes_with(self.base_parameters().len())
     }

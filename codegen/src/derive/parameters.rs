@@ -1,4 +1,4 @@
-//! The parameter vector pi: what the regressor's columns are, and what each entry of the model is in terms of it.
+//! The parameter vector pi: the columns of the regressor, and each entry of the model as a function of pi.
 
 use std::cell::RefCell;
 
@@ -57,8 +57,8 @@ pub enum Inertial {
     Iyz,
     /// Izz.
     Izz,
-    /// Ixx of a planar body: one without extent along z, Izz = Ixx + Iyy. That is what
-    /// [`GroupingConvention::NoSecondMomentAlongAxis`](super::arm::GroupingConvention) leaves.
+    /// Ixx of a planar body, which has no extent along z: Izz = Ixx + Iyy. The convention
+    /// [`GroupingConvention::NoSecondMomentAlongAxis`](super::arm::GroupingConvention) leaves such bodies.
     PlanarIxx,
     /// Iyy of a planar body.
     PlanarIyy,
@@ -103,7 +103,7 @@ impl Inertial {
         }
     }
 
-    /// What it is, with its unit.
+    /// Its meaning, with its unit.
     fn meaning(self) -> &'static str {
         match self {
             Inertial::M => "mass, kg",
@@ -284,7 +284,7 @@ fn stays_short(body: &Body) -> bool {
 pub struct ParameterVector {
     /// One entry per column.
     pub entries: Vec<Parameter>,
-    /// What an entry stands for.
+    /// The kind of its entries.
     pub kind: ParameterKind,
 }
 
@@ -295,11 +295,11 @@ pub struct Parameter {
     pub name: String,
     /// Its value in the description.
     pub nominal: Number,
-    /// What it is, for people.
+    /// Its meaning, for people.
     pub meaning: String,
 }
 
-/// What the entries stand for.
+/// The meaning of the entries.
 #[derive(Clone, Debug)]
 pub enum ParameterKind {
     /// The standard parameters themselves.
@@ -320,7 +320,7 @@ pub enum View<'a> {
     Symbolic,
     /// The entries of the parameter vector symbols, everything else a number.
     Vector(&'a ParameterVector),
-    /// The entries of the parameter vector zero, everything else a number: what remains is the known part.
+    /// The entries of the parameter vector zero, everything else a number: the known part remains.
     VectorZero(&'a ParameterVector),
 }
 
@@ -330,7 +330,7 @@ pub fn nominal(manipulator: &Manipulator, value: &Polynomial) -> Number {
 }
 
 /// a, alpha, d and theta of a Denavit-Hartenberg row at the nominal values of all names, without `base`. Its last two elements before the motion are
-/// Rx(alpha) Tx(a) and Rz(theta) Tz(d) in the modified convention; in the standard one the first of these stands last after it.
+/// Rx(alpha) Tx(a) and Rz(theta) Tz(d) in the modified convention. In the standard convention Tx(a) Rx(alpha) follows the motion.
 pub fn denavit_hartenberg(manipulator: &Manipulator, row: &Row, modified: bool) -> Option<[f64; 4]> {
     let before = &row.before.elements;
     let turn = before.last()?;
@@ -448,7 +448,7 @@ impl ParameterVector {
 }
 
 impl StandardParameter {
-    /// What it is, with unit and frame.
+    /// Its meaning, with unit and frame.
     pub fn meaning(self, manipulator: &Manipulator) -> String {
         let name = |i: u16| &manipulator.joints[usize::from(i)].name;
         match self {

@@ -17,7 +17,7 @@ pub enum Place {
     Joint(usize),
     /// A column that leaves the link that its moment is relative to.
     Leaving(usize),
-    /// A joint, and which of the parameters that it may hand on.
+    /// A joint, and one of the parameters that it may pass on.
     Parameter(usize, usize),
     /// The link that a column leaves, and whether it is still in the joint frame at theta = 0.
     Column(usize, bool),
@@ -96,7 +96,7 @@ impl Plan {
         }
     }
 
-    /// The way taken at a fork with so many.
+    /// The chosen way at a fork with this number of ways.
     fn current(&self, fork: Fork, ways: usize) -> usize {
         let first = if fork.0 == Pass::OriginAlongAxis { self.start.origin.min(ways - 1) } else { 0 };
         self.ways.get(&fork).copied().filter(|&way| way < ways).unwrap_or(first)

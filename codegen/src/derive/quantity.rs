@@ -1,10 +1,10 @@
-//! What a quantity is: the declaration of an emitted function, language-free, and its derivation by recursion over the links.
+//! A quantity: the language-independent declaration of an emitted function, and its derivation by recursion over the links.
 //!
-//! Each is declared once, in the file of its derivation (`quantities/`). Whoever prints, counts, documents or tests functions does so for
-//! every [`Quantity`], by what it says of itself, and knows none by name.
+//! Each is declared once, in the file of its derivation (`quantities/`). Code that prints, counts, documents or tests functions
+//! reads the declaration of every [`Quantity`], and knows no function by name.
 //!
 //! Texts of documentation hold links in braces: `{gravity}` is a function, `{q}` an argument, `{PARAMETER_NAMES}` a constant of the module,
-//! each written as a language writes it. What stands between back quotes is code, the same everywhere.
+//! each in the notation of a language. Text between back quotes is code, the same in all languages.
 
 use std::collections::BTreeMap;
 
@@ -26,13 +26,13 @@ pub struct Quantity {
     pub symbol: Typeset,
     /// Arguments of the plain function, in order; [`Argument::Gravity`] of arms alone that have the acceleration of free fall as an argument.
     pub arguments: &'static [Argument],
-    /// What it returns.
+    /// The parts of its result.
     pub result: &'static [ResultPart],
-    /// The type that holds the parts where these have one, instead of a mere list of them.
+    /// The type of the result, if it is a struct of the parts instead of a list.
     pub structure: Option<Structure>,
     /// Whether there is a form `_with` the parameters at run time.
     pub has_parameters: bool,
-    /// What is said of it.
+    /// Its documentation.
     pub documentation: Documentation,
     /// Its derivation.
     pub recursion: Recursion,
@@ -74,11 +74,11 @@ pub struct ResultPart {
     pub symbol: Typeset,
     /// The letter of an entry.
     pub letter: Typeset,
-    /// Its dimensions, outermost first; none for a number. The last two are those of matrices.
+    /// Its dimensions, outermost first; empty for a number. The last two are the dimensions of a matrix.
     pub lengths: &'static [Length],
     /// Unit of the entries.
     pub unit: &'static str,
-    /// Of a list of matrices, one of them.
+    /// One matrix, if this is a list of matrices.
     pub element: Option<Element>,
     /// Its description where a result has several parts: a title, and what follows it in full documentation.
     pub meaning: [&'static str; 2],
@@ -93,12 +93,12 @@ pub struct Element {
     pub letter: &'static str,
 }
 
-/// The name of a type that holds the parts of a result, and what that is.
+/// The name and the title of a type that has the parts of a result as fields.
 #[derive(Clone, Copy, Debug)]
 pub struct Structure {
     /// Its name.
     pub name: &'static str,
-    /// What it is.
+    /// Its title.
     pub title: &'static str,
 }
 
@@ -147,10 +147,10 @@ pub struct Absent {
     pub reason: String,
 }
 
-/// What is said of a function.
+/// The documentation of a function.
 #[derive(Clone, Copy, Debug)]
 pub struct Documentation {
-    /// What it is.
+    /// Its title.
     pub title: &'static str,
     /// The formula and its source.
     pub formula: &'static str,
@@ -158,22 +158,22 @@ pub struct Documentation {
     pub result: &'static str,
     /// The same of the form with parameters at run time, where that differs.
     pub result_with: Option<&'static str>,
-    /// What can fail, and what can in the form with parameters at run time.
+    /// Possible failures, without and with parameters at run time.
     pub failure: [&'static str; 2],
-    /// Whether it depends on the acceleration of free fall directly, so that this is said.
+    /// Whether it depends on the acceleration of free fall directly, and so documents it.
     pub names_gravity: bool,
-    /// What springs add, said of arms that have them.
+    /// The contribution of springs, for arms that have them.
     pub springs: Option<&'static str>,
-    /// What friction that is neither viscous nor Coulomb's adds, said of arms that have it.
+    /// The contribution of friction that is neither viscous nor Coulomb's, for arms that have it.
     pub more_friction: Option<&'static str>,
-    /// What Stribeck friction adds, said of arms that have it.
+    /// The contribution of Stribeck friction, for arms that have it.
     pub stribeck: Option<&'static str>,
-    /// What friction that grows with the load adds, said of arms that have it.
+    /// The contribution of friction that grows with the load, for arms that have it.
     pub load: Option<&'static str>,
-    /// What base parameters leave out, said of the form with them at run time.
+    /// The part that base parameters omit, for the form with base parameters at run time.
     pub base: Option<&'static str>,
-    /// Whether a module that lacks the function says so; one of which it does not is not asked for by most arms, and its trait knows what
-    /// it is there.
+    /// Whether the head of a module names the function if the arm lacks it. False for functions that most arms do not need; their
+    /// traits have a default.
     pub said_missing: bool,
 }
 
@@ -181,11 +181,11 @@ pub struct Documentation {
 pub struct Recursion {
     /// The entries of all parts, row by row, for an arm in a pool.
     pub entries: fn(&mut Pool, &Arm, &mut Plan, &DerivationInput<'_>) -> Vec<ExprId>,
-    /// What the derivation may do to the arm where its parameters are numbers.
+    /// The passes that may rewrite the arm, if its parameters are numbers.
     pub rewriting: RewriteScope,
     /// How the parameters enter, where the quantity decides that.
     pub view: for<'a> fn(&'a Model, View<'a>) -> View<'a>,
-    /// What is done to the arm before all else.
+    /// Prepares the arm before all passes.
     pub prepare: fn(&mut Pool, &mut Arm),
     /// Passes that it cannot use.
     pub without: &'static [Pass],
@@ -205,7 +205,7 @@ pub struct DerivationInput<'a> {
 impl Documentation {
     const CANNOT_FAIL: &'static str = "cannot fail";
 
-    /// Of a function that cannot fail and that the acceleration of free fall does not enter by itself.
+    /// For a function that cannot fail, and that does not depend on the acceleration of free fall directly.
     pub const fn new(title: &'static str, formula: &'static str, result: &'static str) -> Documentation {
         Documentation {
             title,
@@ -345,7 +345,7 @@ impl Argument {
         }
     }
 
-    /// What it is, with its unit.
+    /// Its meaning, with its unit.
     pub fn meaning(self) -> &'static str {
         match self {
             Argument::Pi => "the parameters in the order of {PARAMETER_NAMES}, SI units.",
@@ -381,7 +381,7 @@ impl Quantity {
     /// Every arm has it.
     pub const NEVER_MISSING: fn(&Model, bool) -> Option<String> = |_, _| None;
 
-    /// Of quantities of the dynamics.
+    /// For quantities of the dynamics.
     pub const MISSING_WITHOUT_MASS: fn(&Model, bool) -> Option<String> =
         |model, _| model.manipulator.is_massless().then(|| "nothing in the arm has mass or inertia".into());
 
@@ -406,10 +406,12 @@ impl Quantity {
         self.result.iter().any(|part| part.lengths.contains(&length))
     }
 
-    /// The entries of the result by columns, in the order in which a program takes them: the last column first, which of joints is the one that a
-    /// recursion from the tip to the base has first; of parameters the first column first, as a body moves by the joints before it. Of a vector each
-    /// entry is a column, of a list of matrices each matrix. The same columns of the terms of one equation stand together, and those of several
-    /// results one result after the other.
+    /// The entries of the result, grouped by columns in the order of evaluation.
+    ///
+    /// Columns of joints run from the last to the first, as a recursion from the tip to the base computes them. Columns of
+    /// parameters run from the first to the last, as a body moves by the joints before it. Each entry of a vector is a column,
+    /// and each matrix of a list. The same columns of the terms of one equation are neighbours; several results follow one
+    /// another.
     pub fn entries_by_columns(&self, sizes: &Sizes) -> Vec<Vec<usize>> {
         let mut columns: BTreeMap<(usize, usize), Vec<usize>> = BTreeMap::new();
         let mut first = 0;

@@ -50,7 +50,7 @@ pub fn derivative_by_parameter(pool: &mut Pool, exprs: &[ExprId], k: u16) -> Vec
     pool.differentiate(exprs, &mut |_, symbol| if symbol == Symbol::Parameter(k) { ExprId::ONE } else { ExprId::ZERO })
 }
 
-/// Columns of standard parameters, those of a link in its link frame.
+/// Columns of standard parameters, which refer to the frame of their link.
 pub fn standard_columns(
     pool: &mut Pool,
     arm: &Arm,
@@ -139,7 +139,7 @@ type LinkColumns = Vec<(usize, [ExprId; Inertial::COUNT])>;
 /// A wrench: force, and moment about an origin.
 type Wrench = (Vector, Vector);
 
-/// The twists of joints in the frames of the links that they move, found when first asked for.
+/// The twists of joints in the frames of the links that they move, computed at the first use.
 struct Twists<'a> {
     arm: &'a Arm,
     /// z_j in frame i.
@@ -222,8 +222,9 @@ impl Twists<'_> {
 
 /// The columns of a body in a frame fixed in joint frame `i`.
 ///
-/// The wrench of each unit parameter goes from link to link towards the base, and each joint on the way feels it directly; where it stops, the
-/// joints further in feel it by their twists. Where that is, and in which of two forms, the plan says, for forces and couples apart.
+/// The wrench of each unit parameter goes from link to link towards the base, and each joint on the way feels it directly. Where
+/// it stops, the joints further in feel it by their twists. The plan chooses the place and one of two forms, for forces and
+/// couples apart.
 fn link_columns(
     pool: &mut Pool,
     plan: &mut Plan,
@@ -243,7 +244,8 @@ fn link_columns(
     while let Some(p) = arm.joints[*path.last().expect("not empty")].parent {
         path.push(p);
     }
-    // Two forms (twist, moment) for each link of the path where a wrench may stop; one at the base, behind which no joint is left.
+    // Two forms (twist, moment) for each link of the path where a wrench may stop, and one form at the base, where no joint is
+    // left.
     let ways = 2 * path.len() - 1;
     let forces =
         (plan.way(Pass::WrenchFrame, Place::Regressor(place, plan::UnitWrench::Force), ways) + plan.first_wrench_frame()) % ways;

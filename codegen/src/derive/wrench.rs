@@ -13,7 +13,7 @@ pub(super) fn wrench_to_parent(pool: &mut Pool, arm: &Arm, i: usize, force: &Vec
     (force, pool.add_vectors(&moment, &lever))
 }
 
-/// What a joint feels of a wrench in its frame.
+/// The component of a wrench, in a joint's frame, along the joint's axis.
 pub(super) fn axis_component(arm: &Arm, i: usize, force: &Vector, moment: &Vector) -> ExprId {
     if arm.joints[i].is_revolute() {
         moment[2]

@@ -33,7 +33,7 @@ pub(super) fn of_module(module: &Module, language: Language, origin: &Origin, no
 /// Columns of the line of options.
 const WIDTH: usize = 132;
 
-/// The line of options, broken at blanks and behind commas.
+/// The line of options, broken at blanks and after commas.
 fn options(module: &Module, language: Language) -> Vec<String> {
     // Only Rust has the crate libm.
     let trig = match module.trig {

@@ -2,8 +2,8 @@
 //!
 //! T = C0 J1 N1 J2 N2 ... Jn Cn with J = Rz(theta + q) Tz(d) or Rz(theta) Tz(d + q) and common normals N = Tx(a) Rx(alpha), in both conventions.
 //! Backwards, between half turns F about x, it is the same joints, F N⁻¹ F = Tx(-a)... = Rx(-alpha) Tx(-a) again a common normal, and links with
-//! the pose exchanged for its inverse. Constant turns of revolute and slides of prismatic joints are offsets of their variables; what is
-//! left of a joint's constants goes into the link behind it.
+//! the pose exchanged for its inverse. Constant turns of revolute and slides of prismatic joints are offsets of their variables.
+//! The other constants of a joint belong to the link after it.
 
 use super::frame::{
     between_axes, compose, half_turn_about_x, identity, inverse, is_parallel, is_zero, slide_along_z, sum_of_angles,
@@ -42,13 +42,13 @@ pub(super) struct Chain {
     pub(super) tool: Frame,
     /// The number in the arm of the joint that is left out, from 0, since its value is given.
     pub(super) left_out: Option<usize>,
-    /// That joint with what is behind it, if it stands between two others; `normals` has what is before it.
+    /// That joint and the normal after it, if it is between two other joints; `normals` has the normal before it.
     pub(super) between: Option<(Joint, Normal)>,
-    /// So many of the last joints are virtual and stay at 0.
+    /// The number of last joints that are virtual and stay at 0.
     pub(super) still: usize,
 }
 
-/// A virtual joint: behind the joint before it Rz(turn) Tz(d) Tx(a) Rx(alpha), then its own axis z.
+/// A virtual joint. Rz(turn) Tz(d) Tx(a) Rx(alpha) leads from the joint before it to its own axis z.
 #[derive(Clone)]
 pub(super) struct Virtual {
     pub(super) prismatic: bool,
@@ -66,13 +66,13 @@ pub(super) struct Virtual {
 pub struct Given {
     /// Its number in the arm, from 0.
     pub joint: usize,
-    /// The place in the loop of the link that it moves, if it stands between two other joints; else it is at an end of the arm.
+    /// The place in the loop of the link that it moves, if it is between two other joints; else it is at an end of the arm.
     pub place: Option<usize>,
     /// Whether it slides.
     pub prismatic: bool,
     /// From the joint before it, or the base, in the direction of the loop.
     pub before: Frame,
-    /// To the joint behind it, or the end effector.
+    /// To the joint after it, or the end effector.
     pub after: Frame,
 }
 
@@ -83,7 +83,7 @@ pub struct Arrangement {
     pub order: Vec<usize>,
     /// Their kinds, in the loop's order.
     pub prismatic: Vec<bool>,
-    /// The links behind them; that of place `open` is the identity.
+    /// The link after each joint. At place `open` it is the identity.
     pub links: Vec<Frame>,
     /// The place of the link that depends on the pose.
     pub open: usize,
@@ -93,11 +93,11 @@ pub struct Arrangement {
     pub after: Frame,
     /// Read against the arm's direction.
     pub backward: bool,
-    /// What the loop's joint values have more than the arm's: (cos theta, sin theta), or (d, 0).
+    /// The loop's joint values minus the arm's: (cos theta, sin theta) of the angle, or (d, 0).
     pub offsets: Vec<[Number; 2]>,
     /// The number in the arm of the joint that is left out, from 0.
     pub(super) left_out: Option<usize>,
-    /// So many of the arm's last joints are virtual and stay at 0.
+    /// The number of the arm's last joints that are virtual and stay at 0.
     pub(super) still: usize,
     /// The joint between two others whose value is given, with the place of the link that it moves: that of `links` is the identity.
     pub(super) given: Option<Given>,
@@ -173,7 +173,7 @@ impl Chain {
         self.joints.push(Joint { prismatic: true, theta: no_turn(), d: Number::zero() });
     }
 
-    /// A revolute joint beyond the last, about the z axis of the end effector; or why there is none.
+    /// Adds a revolute joint after the last, about the z axis of the end effector. Errors: the reason why that is impossible.
     pub(super) fn turn_at_the_end(&mut self) -> Result<(), String> {
         let (Some(between), Some(last)) = (between_axes(&self.tool), self.joints.last_mut()) else {
             return Err("the last axis and the z axis of the end effector have no common normal in numbers".into());
@@ -199,7 +199,7 @@ impl Chain {
         Ok(())
     }
 
-    /// A virtual joint beyond the last, behind which the end effector is where it was while the virtual joint is at 0.
+    /// Adds a virtual joint after the last. At its value 0 the end effector stays where it was.
     pub(super) fn virtual_at_the_end(&mut self, joint: &Virtual) {
         let Some(last) = self.joints.last_mut() else { return };
         let by = joint.d.as_ref().map_or_else(Number::zero, |d| d - &last.d);
@@ -229,7 +229,7 @@ impl Chain {
             if !joint.prismatic && !along {
                 return false;
             }
-            // At q = 0 a revolute joint that turns about the axis leaves the directions of those behind it relative to the axis.
+            // A revolute joint about the axis does not change directions of later axes relative to the axis, so q = 0 serves.
             at = compose(&at, &turn_about_z(&joint.theta));
             if let Some(normal) = self.normals.get(i) {
                 at = compose(&at, &normal.frame(false));
@@ -246,7 +246,7 @@ impl Chain {
         let open = order.iter().position(|joint| *joint == last).unwrap_or(n - 1);
         let left = |joint: &Joint| if joint.prismatic { turn_about_z(&joint.theta) } else { slide_along_z(&joint.d) };
         let normal = |joint: usize| if backward { joint - 1 } else { joint };
-        // The given joint stands behind joint `left_out` - 1 of those that are left, and before joint `left_out`.
+        // The given joint is between the remaining joints `left_out` - 1 and `left_out`.
         let between = self.between.as_ref().zip(self.left_out);
         let place = between
             .and_then(|(_, given)| order.iter().enumerate().position(|(p, joint)| p != open && normal(*joint) + 1 == given));

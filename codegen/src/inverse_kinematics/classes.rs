@@ -15,9 +15,9 @@ pub struct Regional {
     pub text: &'static str,
     /// Closed forms throughout; others are polished.
     pub closed: bool,
-    /// At most so many solutions.
+    /// The largest number of solutions.
     pub most: usize,
-    /// What its signs choose between, from bit 0 on: none for the four roots of an equation.
+    /// The alternatives of its signs, from bit 0 on; empty for the four roots of an equation.
     choices: &'static [(Pair, Sign)],
     /// What makes it hold, with `{1}`, `{2}`, `{3}` for the joints.
     because: &'static str,
@@ -32,7 +32,7 @@ const WRIST: Pair = ["wrist not flipped", "wrist flipped"];
 const TURN: Pair = ["turn left", "turn right"];
 const SLIDE: Pair = ["slide far", "slide near"];
 
-/// What is positive in the first of two ways, and negative in the second; joints by their places in the case.
+/// The quantity that is positive in the first of two ways, and negative in the second; joints by their places in the case.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Sign {
     /// a sin q - b cos q for the joint's equation a cos q + b sin q = d: the root w of block 1.
@@ -203,8 +203,8 @@ impl Regional {
 }
 
 impl Given {
-    /// The link that it moves, at one of three values. An entry is of degree 1 in the value, or in its sine and cosine, which has no more than two
-    /// zeros on the circle: what is 0 at three values is 0 at all.
+    /// The link that it moves, at one of three values. An entry has degree 1 in the value, or in its sine and cosine, and so at
+    /// most two zeros on the circle: an entry that is 0 at three values is 0 at all values.
     pub(super) fn link(&self, sample: usize) -> Frame {
         let (x, y, over) = [(33, 56, 65), (48, 55, 73), (-13, 84, 85)][sample];
         let over = Number::from(Rational::ONE / Rational::from(over));
@@ -371,7 +371,7 @@ pub(super) fn shoulder_elbow_wrist(chain: &Chain, length: &Number) -> Option<Inv
     })
 }
 
-/// Four joints, place 4 of the loop revolute with the pose behind it, all revolute axes parallel.
+/// Four joints with parallel revolute axes. Place 4 of the loop is revolute, and the pose follows it.
 fn parallel_turns(chain: &Chain) -> Option<Class> {
     chain.arrangements().find_map(|way| {
         if way.open != 3 || way.prismatic[3] {
@@ -429,7 +429,7 @@ fn three_prismatic(chain: &Chain) -> Option<Class> {
     })
 }
 
-/// Four revolute joints, three of them with neighbours at an angle behind the first, and two prismatic ones.
+/// Four revolute and two prismatic joints. After the first, three revolute axes are at an angle to their neighbours.
 fn two_slides(chain: &Chain, length: &Number) -> Option<Class> {
     if chain.between.is_some() {
         return None;

@@ -69,7 +69,7 @@ pub(super) fn inverse(f: &Frame) -> Frame {
     std::array::from_fn(|i| std::array::from_fn(|j| if j == 3 { back(i) } else { f[j][i].clone() }))
 }
 
-/// Whether the axes z before and behind a link are parallel.
+/// Whether the axes z before and after a link are parallel.
 pub(super) fn is_parallel(f: &Frame) -> bool {
     is_zero(&f[2][0]) && is_zero(&f[2][1])
 }
@@ -83,7 +83,7 @@ pub(super) fn is_right(f: &Frame) -> bool {
 /// root that has no form.
 pub(super) fn turns_beside_x(f: &Frame) -> Option<[[Number; 2]; 2]> {
     let none = || [Number::one(), Number::zero()];
-    // What is left where one of the turns is known: the first column, or the first row.
+    // The rest if one of the turns is known: the first column, or the first row.
     let column = |f: &Frame| [f[0][0].clone(), f[1][0].clone()];
     let row = |f: &Frame| [f[0][0].clone(), -&f[0][1]];
     if is_zero(&f[2][0]) {
@@ -124,7 +124,7 @@ pub(super) struct BetweenAxes {
     pub(super) after: ([Number; 2], Number),
 }
 
-/// A displacement by the common normal of the axes before and behind it. None where it asks for roots that have no form.
+/// A displacement by the common normal of the axes before and after it. `None` if it needs roots that have no form.
 pub(super) fn between_axes(f: &Frame) -> Option<BetweenAxes> {
     let turned_back = |[c, s]: &[Number; 2]| compose(&turn_about_z(&[c.clone(), -s]), f);
     if is_parallel(f) {

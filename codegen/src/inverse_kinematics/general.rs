@@ -8,7 +8,7 @@ use super::frame::Frame;
 use crate::exact::Number;
 use armgen_algebra::scramble::scramble;
 
-/// So many poses are tried an arrangement.
+/// The number of poses for each arrangement.
 const POSES: u64 = 128;
 
 fn rounded(f: &Frame) -> block::Frame {

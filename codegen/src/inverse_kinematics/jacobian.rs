@@ -8,12 +8,13 @@ use armgen_algebra::scramble::scramble;
 /// The Jacobian of the end effector at a random posture, in the base frame.
 pub(super) struct Jacobian {
     field: Field,
-    /// Of each joint (z × (t - p), z) for an axis z through p and the end effector at t, or (z, 0).
+    /// The column of each joint: (z × (t - p), z) for an axis z through p and the end effector at t, or (z, 0) for a prismatic
+    /// joint.
     columns: Vec<[Element; 6]>,
 }
 
 impl Jacobian {
-    /// With the virtual joints at 0, behind which a joint may have been `taken` from the arm. None: the field has not all roots.
+    /// The Jacobian with the virtual joints at 0; a joint after them may be `taken`. `None` if the field lacks a root.
     pub(super) fn of(chain: &Chain, taken: Option<&Given>) -> Option<Jacobian> {
         let (way, own) = (chain.arranged(0, false), chain.joints.len() - chain.still);
         let tool = match taken.filter(|given| given.joint > 0) {
@@ -87,7 +88,7 @@ fn cross(field: &Field, p: [Element; 3], z: [Element; 3]) -> [Element; 3] {
     [minor(1, 2), minor(2, 0), minor(0, 1)]
 }
 
-/// A frame behind Rz Tz of (c, s, d) and a link.
+/// A frame after Rz Tz of (c, s, d) and a link.
 fn stepped(
     field: &Field,
     at: &[[Element; 4]; 3],

@@ -5,7 +5,7 @@ use super::classes::Regional;
 use super::{Construction, InverseKinematics, Redundancy, Target};
 
 impl InverseKinematics {
-    /// Class, steps and what is singular, as lines of text.
+    /// Class, steps and singular postures, as lines of text.
     pub fn text(&self) -> String {
         let target = match self.target {
             Target::Pose => "given T = (R p; 0 1)",

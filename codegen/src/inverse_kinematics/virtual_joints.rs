@@ -1,9 +1,9 @@
 //! A pose for an arm with fewer than six joints: virtual joints beyond the last one make it an arm of a class, and have to come out 0.
 //!
-//! Which virtual joints serve is found by trial, simple ones first: three turns and three slides, a wrist through a point that the pose fixes, a
-//! turn across the last axis. They serve where the completed arm is regular at a general posture of the arm itself, with the virtual
-//! joints at 0: then its solutions there are isolated and simple, and a construction lists all of them. The Jacobian says so, of full rank at
-//! a random posture of a prime field.
+//! Virtual joints are found by trial, simple ones first: three turns and three slides, a wrist through a point that the pose
+//! fixes, a turn across the last axis. The completed arm must be regular at a general posture of the arm itself, with the virtual
+//! joints at 0. Then its solutions there are isolated and simple, and a construction lists all of them. The test is a Jacobian of
+//! full rank at a random posture of a prime field.
 
 use super::chain::{Chain, Virtual};
 use super::classes;
@@ -63,7 +63,7 @@ fn ways(chain: &Chain, length: &Number) -> Vec<Vec<Virtual>> {
             ways.push(way);
         }
     }
-    // A wrist of three turns: about the last axis and two across it, or all behind the third joint.
+    // A wrist of three turns: about the last axis and two across it, or all after the third joint.
     let (o, skew) = (Number::zero, angle(3, 4, 5));
     let wrist = |d: &Number| [across(d.clone()), across(Number::zero())];
     match own {
@@ -116,7 +116,7 @@ pub(super) fn classify(chain: &Chain, length: &Number) -> Result<InverseKinemati
     let found =
         closed.map_or_else(|| all.iter().find_map(|completed| classes::classify(completed, Target::Pose, length).ok()), Some);
     let mut found = found.ok_or_else(|| format!("there is no construction for a pose and {own} joints of this geometry"))?;
-    // Joints behind the last one that stay at 0, wherever they are.
+    // Joints after the last that stay at 0, at any place.
     let mut still = chain.clone();
     (own..6).for_each(|_| still.virtual_at_the_end(&Virtual { d: None, ..across(Number::zero()) }));
     found.own = Some(still.arranged(0, false));

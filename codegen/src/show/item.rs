@@ -1,8 +1,8 @@
-//! What can be asked for by name.
+//! Items that `armgen show` knows by name.
 
 use crate::catalogue::{self, Quantity};
 
-/// What can be asked for by name.
+/// An item that `armgen show` knows by name.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Item {
     /// A function of the emitted module.

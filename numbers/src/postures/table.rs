@@ -19,7 +19,7 @@ enum Calls {
     General(Box<[Arrangement<6>; 2]>),
 }
 
-/// What a call needs.
+/// The data of a call.
 #[derive(Clone, Debug)]
 pub struct Table {
     prismatic: Vec<bool>,
@@ -70,7 +70,7 @@ fn arrangement<const J: usize>(way: &super::Arrangement<Real>) -> Result<Arrange
     })
 }
 
-/// Whether a list of places is one of places behind each other.
+/// Whether the places are consecutive.
 fn is_ascending(places: &[usize]) -> bool {
     places.windows(2).all(|pair| pair[0] < pair[1]) && places.iter().all(|place| *place < 6)
 }
@@ -103,7 +103,7 @@ fn table(of: &InverseKinematics<Real>) -> Result<Table, Unsound> {
     if !given.as_ref().is_none_or(moved) {
         return Err(Unsound("the joint that is given"));
     }
-    // Joints behind those of the arm are virtual: one at most, but for a loop of the arm's own joints.
+    // Joints after the arm's are virtual. There is at most one, except in a loop of the arm's own joints.
     let all = joints + usize::from(given.is_some());
     let fits = match (&of.own, &given) {
         (None, _) => dof == all || dof + 1 == all && !swivel,
@@ -145,15 +145,15 @@ fn postures<const JOINTS: usize, const MOST: usize>(found: &block::Postures<JOIN
     }
 }
 
-/// What a call is given, as far as it is the same for all constructions.
+/// Arguments of a call that all constructions share.
 struct At {
     /// The pose that the joints of the loop have to reach.
     t: Frame,
     /// The position likewise.
     position: Vector,
-    /// The point at it, seen from behind the loop's joints, where that is not the origin there.
+    /// The point at this position in the frame after the loop's joints, unless it is the origin of that frame.
     tip: Option<Vector>,
-    /// The value of the joint that is given.
+    /// The value of the given joint.
     value: [Real; 2],
     /// The link that it moves, with its place.
     moved: Option<(usize, Frame)>,
@@ -242,7 +242,7 @@ impl Table {
         }
     }
 
-    /// Of an arm's own joints solutions are refined later.
+    /// The solutions of the arm's own joints are refined later.
     fn bring_to_the_pose(&self, found: &mut Branches<6, 8>, links: &[Frame; 6], way: &Arrangement<6>, polished: bool) {
         if self.own.is_none() {
             let closing = Loop { links, prismatic: way.prismatic, target: [0.0; 3], length: self.length };

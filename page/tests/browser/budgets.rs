@@ -3,7 +3,7 @@
 use super::driver::Tab;
 use super::pages::{long, robot, written};
 
-/// The table of docs/page.md: `cargo test -p armgen-page --test all -- --ignored --nocapture table_of_budgets`.
+/// The table of benches/results/page.csv: `cargo test -p armgen-page --test all -- --ignored --nocapture table_of_budgets`.
 #[test]
 #[ignore = "full: measures times: alone, on a machine that does nothing else"]
 fn table_of_budgets() {

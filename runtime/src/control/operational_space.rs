@@ -51,13 +51,20 @@ impl<T: RealField + Copy, const N: usize> NullSpace<T, N> {
         Ok(Self { stiffness, damping, posture })
     }
 
+    /// The same about another posture.
+    #[cfg(feature = "std")]
+    pub(crate) fn about(self, posture: SVector<T, N>) -> Self {
+        Self { posture, ..self }
+    }
+
     /// Diagonals of K_N and D_N.
     #[cfg(feature = "std")]
     pub(crate) fn gains(&self) -> (SVector<T, N>, SVector<T, N>) {
         (self.stiffness, self.damping)
     }
 
-    fn acceleration(&self, state: &State<T, N>) -> SVector<T, N> {
+    /// y_0 of a state.
+    pub(super) fn acceleration(&self, state: &State<T, N>) -> SVector<T, N> {
         self.stiffness.component_mul(&(self.posture - state.q)) - self.damping.component_mul(&state.dq)
     }
 }

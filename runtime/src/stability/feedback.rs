@@ -27,16 +27,19 @@ pub struct Feedback<T, const N: usize> {
     pub state_by_position: DMatrix<T>,
     /// E_v of dm/dt, one row for each state of the controller; its unit, per rad or m.
     pub state_by_velocity: DMatrix<T>,
+    /// Joints that nothing pulls back: their position is no state of the loop.
+    pub free: [bool; N],
 }
 
 impl<T: RealField + Copy, const N: usize> Feedback<T, N> {
-    fn without_state(position: SMatrix<T, N, N>, velocity: SMatrix<T, N, N>) -> Self {
+    pub(super) fn without_state(position: SMatrix<T, N, N>, velocity: SMatrix<T, N, N>) -> Self {
         Self {
             position,
             velocity,
             torque_by_state: DMatrix::zeros(N, 0),
             state_by_position: DMatrix::zeros(0, N),
             state_by_velocity: DMatrix::zeros(0, N),
+            free: [false; N],
         }
     }
 }
@@ -261,6 +264,7 @@ impl<T: RealField + Copy, const N: usize, const P: usize> Adaptive<T, N, P> {
             state_by_position: -(&transpose * lambda),
             state_by_velocity: -transpose,
             torque_by_state: l,
+            free: [false; N],
         }
     }
 }
@@ -351,6 +355,7 @@ impl<R: Dynamics<N>, const N: usize, const M: usize> Linearise<R, N> for Operati
             torque_by_state: DMatrix::from_fn(N, rows.len(), |i, k| gain[(i, rows[k])] * self.k_i[rows[k]]),
             state_by_position: DMatrix::from_fn(rows.len(), N, |k, i| -j[(rows[k], i)]),
             state_by_velocity: DMatrix::zeros(rows.len(), N),
+            free: [false; N],
         })
     }
 }

@@ -47,6 +47,11 @@ pub trait LineariseInMotion<P, R: Dynamics<N>, const N: usize>: Controller<R, N>
     #[must_use]
     fn converged(&self, plant: &P) -> Self;
 
+    /// Whether a hand leads the arm: then it has no motion of its own that could be lost.
+    fn is_led(&self) -> bool {
+        false
+    }
+
     /// The estimate or the integral.
     fn controller_state(&self) -> Vec<R::Real> {
         Vec::new()
@@ -255,8 +260,12 @@ where
             let torque = controller.torque(model, references.get(k)?, measured).ok()?;
             Some((torque.tau, controller.controller_state()))
         };
-        let lost = self
-            .run(controller.controller_state(), &|k, measured, controller_state| law(controller, k, measured, controller_state));
+        let run = || {
+            self.run(controller.controller_state(), &|k, measured, controller_state| {
+                law(controller, k, measured, controller_state)
+            })
+        };
+        let lost = if controller.is_led() { None } else { run() };
         let converged = controller.converged(self.plant);
         let loop_ = Linear {
             analysis: self,

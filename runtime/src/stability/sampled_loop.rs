@@ -144,6 +144,15 @@ impl<T: RealField + Copy, const N: usize> SampledLoop<T, N> {
             }
         });
         let (size, samples) = (2 * N + controller_states, delay.count());
+        // The position of a joint that nothing pulls back is no state: its row and its column go.
+        let without_free = |whole: DMatrix<T>| {
+            let kept: Vec<usize> = (0..whole.nrows()).filter(|i| *i >= N || !self.feedback.free[*i]).collect();
+            if kept.len() < whole.nrows() {
+                whole.select_rows(&kept).select_columns(&kept)
+            } else {
+                whole
+            }
+        };
         let all = size + samples * N;
         let mut whole = DMatrix::zeros(all, all);
         whole.view_mut((0, 0), (2 * N, 2 * N)).copy_from(&a);
@@ -157,7 +166,7 @@ impl<T: RealField + Copy, const N: usize> SampledLoop<T, N> {
         if samples == 0 {
             let mut top = whole.view_mut((0, 0), (2 * N, size));
             top += b * law;
-            return whole;
+            return without_free(whole);
         }
         // The first of the chain acts, the others move up, the law's torque joins at the end.
         whole.view_mut((0, size), (2 * N, N)).copy_from(&b);
@@ -165,7 +174,7 @@ impl<T: RealField + Copy, const N: usize> SampledLoop<T, N> {
             whole[(i, i + N)] = T::one();
         }
         whole.view_mut((all - N, 0), (N, size)).copy_from(&law);
-        whole
+        without_free(whole)
     }
 
     /// The largest modulus of the eigenvalues at the sampling period `period`, s.

@@ -1,6 +1,7 @@
 //! Shared by the tests: a SCARA written by hand from its closed forms, and the path that cuts a ghost out of a sheet.
 #![allow(dead_code, unreachable_pub)]
 
+pub mod arms;
 pub mod chain;
 pub mod ghost;
 pub mod gimbal;

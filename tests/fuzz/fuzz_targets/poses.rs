@@ -7,7 +7,7 @@ use libfuzzer_sys::fuzz_target;
 /// What an emitted module has around the blocks, for six joints of any kind.
 #[allow(dead_code, missing_docs, clippy::all)]
 mod solver {
-    use armgen_inverse_kinematics::f64::*;
+    pub use armgen_inverse_kinematics::f64::*;
 
     pub const DOF: usize = 6;
     pub const MAX_SOLUTIONS: usize = 16;

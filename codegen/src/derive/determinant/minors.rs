@@ -31,7 +31,7 @@ pub struct Minors {
     pub values: Vec<ExprId>,
     /// The factors that all of them share.
     pub common: Vec<Factor>,
-    /// What is left of each, d_k: D_k over the product of the shared factors.
+    /// The remainders d_k: each D_k over the product of the shared factors.
     pub left: Vec<Product>,
 }
 
@@ -40,7 +40,7 @@ pub struct Minors {
 pub struct Product {
     /// Its constant factor.
     pub coefficient: Number,
-    /// Its other factors; a power stands as often as it says.
+    /// Its other factors; a factor of a power occurs repeatedly.
     pub factors: Vec<NormalForm>,
 }
 
@@ -164,7 +164,7 @@ fn twists(pool: &mut Pool, arm: &Arm) -> Vec<Vec<ExprId>> {
     rows
 }
 
-/// The factors that some forms share, and what is left of each form.
+/// The factors that some forms share, and each form divided by them.
 fn taken_apart(model: &Model, forms: Vec<NormalForm>) -> (Vec<Factor>, Vec<Product>) {
     let (found, mut rest) = contents(model, forms);
     let mut common: Vec<Factor> = found.into_iter().map(|(form, zeros)| Factor { form, zeros }).collect();
@@ -215,7 +215,7 @@ fn constant(form: &NormalForm) -> Option<&Number> {
     (harmonic.angles.is_empty() && factors.is_empty() && terms.next().is_none()).then_some(c)
 }
 
-/// The powers of parameters that stand in every term.
+/// The powers of parameters that occur in every term.
 fn shared_powers(forms: &[NormalForm]) -> Powers {
     let mut all = forms.iter().flat_map(NormalForm::terms).map(|(_, factors, _)| factors);
     let Some(first) = all.next() else { return Powers::new() };
@@ -228,7 +228,7 @@ fn shared_powers(forms: &[NormalForm]) -> Powers {
     shared
 }
 
-/// A form over powers that stand in every term.
+/// A form divided by powers that occur in every term.
 fn divided(form: &NormalForm, by: &Powers) -> NormalForm {
     let mut quotient = NormalForm::default();
     for (harmonic, factors, c) in form.terms() {
@@ -239,8 +239,8 @@ fn divided(form: &NormalForm, by: &Powers) -> NormalForm {
     quotient
 }
 
-/// A form with coefficients that are integers without a common divisor, as far as they are fractions, and begin with a positive one; and
-/// what it was multiplied by.
+/// A form whose rational coefficients are integers without a common divisor, the first of them positive; and the factor that
+/// makes it so.
 fn primitive(form: &NormalForm) -> (NormalForm, Number) {
     let Some(scale) = content(form.terms().map(|(_, _, c)| c)) else { return (form.clone(), Number::one()) };
     let negative = form.by_harmonic().first().is_some_and(|(_, group)| group[0].1.leads_negative());
@@ -248,7 +248,7 @@ fn primitive(form: &NormalForm) -> (NormalForm, Number) {
     (form.scaled(&Number::from(Rational::ONE / &scale)), Number::from(scale))
 }
 
-/// The greatest fraction, positive, by which all terms of some numbers are multiplied; none where there are none.
+/// The greatest positive fraction that divides all terms of some numbers; `None` without a term.
 fn content<'a>(numbers: impl IntoIterator<Item = &'a Number>) -> Option<Rational> {
     let terms = numbers.into_iter().flat_map(|number| number.terms().map(|(_, coefficient)| coefficient));
     let parts = terms.map(|r| (r.numerator().clone().unsigned_abs(), r.denominator().clone()));

@@ -4,7 +4,8 @@
 //! cos kq + i sin kq = (1 + i t)^2k / (1 + t²)^k
 //! ```
 //!
-//! A coefficient counts as zero when the prime field says so: quotients of general constants may be zero without looking it.
+//! A coefficient counts as zero if it is zero in the prime field, since a quotient of general constants can be zero without
+//! showing it.
 
 use crate::exact::Number;
 use crate::ring::field::{Element, Field};
@@ -149,8 +150,8 @@ pub(super) fn divide(field: &mut Field, a: &Univariate, b: &Univariate) -> Univa
 
 /// The monic greatest common divisor of some polynomials that are not all 0.
 ///
-/// Its degree in the prime field, where no leading coefficient vanishes, bounds that over the constants: most have none, which is known before any
-/// quotient of long constants is formed.
+/// In the prime field no leading coefficient vanishes, so the degree there bounds the degree over the constants. It is most often
+/// 0, and then no quotient of long constants is formed.
 pub(super) fn gcd_of_all(field: &mut Field, mut all: Vec<Univariate>) -> Univariate {
     let degree = degree_of_gcd(field, &all);
     if degree == 0 {

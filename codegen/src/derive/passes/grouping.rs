@@ -4,11 +4,11 @@
 //! A mass on the axis of a revolute joint, its moment and second moment along the axis, look the same to the parent whatever the
 //! joint angle, and the joint does not feel them (Gautier and Khalil 1990, "Direct calculation of minimum set of inertial
 //! parameters of serial robots", in second-moment form). Any amount may move: the plain way moves all, so that m, hz and Szz of the link
-//! vanish; another way moves as much as makes an entry of the parent vanish. The second moments of a link behind a prismatic joint never
-//! change their direction: all six move.
+//! vanish; another way moves as much as makes an entry of the parent vanish. A prismatic joint never turns the second moments of
+//! its link: all six move.
 //!
-//! The origin of a joint frame is free along the joint axis: at the foot of either common normal, where Sxz or Syz vanishes, or, where frames
-//! are asked for, beside the end effector.
+//! The origin of a joint frame is free along the joint axis: at the foot of either common normal, or where Sxz or Syz vanishes.
+//! For frames it can also be next to the end effector.
 
 use super::super::arm::{Arm, Body};
 use super::super::plan::{Place, Plan};

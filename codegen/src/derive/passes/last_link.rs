@@ -21,7 +21,7 @@ use crate::ring::matrix::Matrix;
 use crate::ring::turn::Turn;
 use crate::ring::{AngleSum, ExprId, Pool, Symbol};
 
-/// Where the joint angle stands, in quarter turns after the joint variable: 0 for sin(theta) = sin(q), 1 for sin(theta) = cos(q), and so on.
+/// The joint angle in quarter turns after the joint variable: 0 for sin(theta) = sin(q), 1 for sin(theta) = cos(q), and so on.
 fn quarters(pool: &mut Pool, sine: ExprId, joint: u16) -> Option<usize> {
     let (s, c) = (pool.symbol(Symbol::Sine(joint)), pool.symbol(Symbol::Cosine(joint)));
     [s, c, -s, -c].iter().position(|&candidate| candidate == sine)
@@ -64,7 +64,7 @@ pub(super) fn rotate(pool: &mut Pool, arm: &mut Arm, plan: &mut Plan) {
     }
 }
 
-/// Turns the axes of the last link by the angle that the field knows, if there is one.
+/// Turns the axes of the last link by the angle of the field, if it has such an angle.
 pub(crate) fn rotate_last_link(pool: &mut Pool, arm: &mut Arm) {
     let Some((turn, i)) = pool.field().turn().cloned().zip(last(arm)) else { return };
     let Some(quarters) = quarters(pool, arm.joints[i].sine, i as u16) else { return };

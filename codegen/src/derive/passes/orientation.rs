@@ -2,8 +2,8 @@
 //!
 //! Joints with parallel axes turn what they carry by the sum of their angles. Instead of turning everything joint by joint, the links
 //! between them are described in axes that all share: those of the link before the first of them (angle 0), or those of one of their links.
-//! Then only the bodies of these links and the offsets between the axes turn, which are constants, and what comes from beyond turns once,
-//! by the sum, whose sine and cosine are asked for as such, or formed by the addition theorem.
+//! Then only the bodies of these links and the offsets between the axes turn, which are constants. Loads from beyond turn once,
+//! by the sum. Its sine and cosine are inputs, or formed by the addition theorem.
 
 use super::super::arm::{Arm, Joint};
 use super::super::plan::{Place, Plan};
@@ -83,14 +83,14 @@ pub(super) fn parallel_axes(pool: &mut Pool, arm: &mut Arm, plan: &mut Plan) {
                 orient(pool, arm, &run, way - 1, sums);
             }
         }
-        // In a tree the joints of a run need not be consecutive; where they are, the search goes on behind the last.
+        // In a tree the joints of a run need not be consecutive. If they are, the search continues after the last.
         first = if run.iter().enumerate().all(|(k, &i)| i == first + k) { last + 1 } else { first + 1 };
     }
 }
 
 /// Describes all links of the run but the last in axes at angle `reference` (0: of the link before, k: of the k-th link).
 ///
-/// The sums of their angles are inputs if `sums` says so, else they are formed by the addition theorem.
+/// With `sums`, sines and cosines of sums of their angles are inputs. Otherwise the addition theorem forms them.
 fn orient(pool: &mut Pool, arm: &mut Arm, run: &[usize], reference: usize, sums: bool) {
     let steps: Vec<Angle> = run.iter().map(|&i| Angle::of(pool, &arm.joints[i], i, sums)).collect();
     // The angle from link a of the run to link b, 0 being the link before it.

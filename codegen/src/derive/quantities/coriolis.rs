@@ -9,8 +9,8 @@
 //! c_ijk = ∫ ∂_i x · ∂_j ∂_k x dm. With this choice dB/dt - 2C is skew-symmetric, as passivity-based control needs.
 //!
 //! For a revolute joint j, ∂_j x = z × r with r from a point of its axis, and d/dt ∂_j x = dz/dt × r + z × dr/dt, over all that joint j
-//! carries. With Ω the angular velocity of the parent link, dr/dt = Ω × r + v: what is left is the velocity v *relative to the
-//! parent*, and its moments K = ∫ v rᵀ dm, h_v = ∫ v dm beside h = ∫ r dm and S = ∫ r rᵀ dm hold everything. An ancestor i feels
+//! carries. With Ω the angular velocity of the parent link, dr/dt = Ω × r + v, where v is the velocity *relative to the parent*.
+//! The moments K = ∫ v rᵀ dm and h_v = ∫ v dm, with h = ∫ r dm and S = ∫ r rᵀ dm, determine all entries. An ancestor i feels
 //! the wrench of ∂_j x in B_ij, that of d/dt ∂_j x in C_ij, and in C_ji = ∫ ∂_j x · (dz_i/dt × r + z_i × dr/dt) dm
 //!
 //! ```text

@@ -21,10 +21,10 @@
 //! ∂tau_i/∂q_j = z'' · n_i + 2 z' · E_i - (z × a) · f_i = (z'' - 2 Ω × z') · n_i + 2 z' · (E_i + n_i × Ω) - (z × a) · f_i
 //! ```
 //!
-//! where E + n × Ω is what `coriolis.rs` hands on, and z'' - 2 Ω × z' is the z row of U, negated: both are known already.
+//! where `coriolis.rs` passes on E + n × Ω, and z'' - 2 Ω × z' is the z row of U, negated: both are known already.
 //! A prismatic joint has ∂_j x = z: F = m z'', N = z × f + h × z'' before it, z'' · f_i beyond it.
 //! A rotor adds to n, n_i and E_i what it adds to them in `newton_euler.rs` and `coriolis.rs`, and the rotors' momentum s adds z' × s to N.
-//! The formulas are those of Singh, Russell and Wensing (2022, "Efficient analytical derivatives of rigid-body dynamics using spatial
+//! The formulas follow Singh, Russell and Wensing (2022, "Efficient analytical derivatives of rigid-body dynamics using spatial
 //! vector algebra"); moments instead of 6 x 6 matrices, and one set of columns for B, C and ∂tau/∂q, are ours.
 //!
 //! ```text
@@ -125,7 +125,7 @@ pub static FORWARD_DYNAMICS_DERIVATIVES: Quantity = Quantity {
     interface: Some("ForwardDynamicsDerivatives"),
 };
 
-/// What the derivatives have of friction that grows with the load.
+/// Documentation of the derivatives of friction that grows with the load.
 const LOAD: &str =
     "Of friction that grows with the load they have F_l sign(g_i) sign(dq_i) dg_i/dq, sign(0) = 0: that jumps where g_i changes its sign.";
 
@@ -207,7 +207,7 @@ fn by_positions(pool: &mut Pool, arm: &Arm, motion: &Motion) -> Rows {
             derivative[parent][j] = axis_component(arm, parent, &force, &moment);
             link = parent;
         }
-        // What the joints before j change at it.
+        // The effect of the joints before j.
         let column = coriolis::composite_column(pool, arm, j, &omega, &composite[j], &velocity_moments[j]);
         let mut propagated = propagator.start(pool, &mut plain, column, j);
         while let Some(parent) = propagator.propagate_to_parent(pool, &mut plain, &mut propagated) {

@@ -249,7 +249,7 @@ pub fn geometric_jacobian_dot(pool: &mut Pool, arm: &Arm) -> Vec<Vec<ExprId>> {
     let (mut omega, mut axis_rates) = (vec![ZERO; arm.dof()], vec![ZERO; arm.dof()]);
     let mut before = ZERO;
     for &i in &path {
-        // The axis stands still on the link before it, too, of which the joint's own rate is no part.
+        // The axis is fixed to the link before it, too, whose motion does not include the joint's own rate.
         axis_rates[i] = pool.cross(&before, &z(&frames.joints[i]));
         let spin = if arm.joints[i].is_revolute() { pool.scale(rates[i], &z(&frames.joints[i])) } else { ZERO };
         omega[i] = pool.add_vectors(&before, &spin);

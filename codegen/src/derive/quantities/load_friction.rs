@@ -5,8 +5,9 @@
 //! ∂tau_i/∂q_j = F_l sign(g_i) ∂g_i/∂q_j sign(dq_i),   ∂tau_i/∂dq_j = 0
 //! ```
 //!
-//! F_l >= 0 has no unit. g_i is the entry of g(q), what a spring adds included: the torque that the drive holds at rest. |g_i| and sign(g_i) are no
-//! polynomials: they are inputs here, and the pool keeps what g_i is. The torque is not linear in masses, so no regressor has it.
+//! F_l >= 0 has no unit. g_i is the entry of g(q), springs included: the torque that the drive holds at rest.
+//! |g_i| and sign(g_i) are no polynomials: they are inputs here, and the pool keeps the expression of g_i.
+//! The torque is not linear in masses, so the regressors omit it.
 
 use super::gravity::gravity;
 use crate::derive::arm::Arm;

@@ -1,4 +1,4 @@
-//! What a momentum observer needs: the generalised momentum B dq and C' dq, by one recursion.
+//! For momentum observers: the generalised momentum B dq and C' dq, by one recursion.
 //!
 //! ```text
 //! p = B dq = ∂T/∂dq                                                              (the book, Sect. 7.1.1)
@@ -6,15 +6,17 @@
 //! tau = dp/dt - C' dq + F + g                                                    (De Luca and Mattone 2003)
 //! ```
 //!
-//! All that joint k carries has the linear momentum f and the angular momentum n about o_k. A joint feels its component along the axis in
-//! p. To what joint k carries, turning joint k is the same as turning the motion of the link before the other way: with ω and v those of link k,
+//! The links that joint k carries have the linear momentum f and the angular momentum n about o_k. The entry p_k is the component
+//! along the axis. For these links, turning joint k is the same as turning the motion of the link before it the other way. With ω
+//! and v of link k,
 //!
 //! ```text
 //! p_k = z · n,   ∂T/∂q_k = n · (ω × z) + f · (v × z)        (revolute)
 //! p_k = z · f,   ∂T/∂q_k = f · (ω × z)                      (prismatic)
 //! ```
 //!
-//! The rotor of joint i has I_m k dq_i z_m beside what turns with its link, and p_i holds I_m k (k dq_i + z_m · ω).
+//! The rotor of joint i contributes I_m k dq_i z_m besides the part that turns with its link, and I_m k (k dq_i + z_m · ω) to
+//! p_i.
 
 use crate::derive::arm::{symmetric, Arm};
 use crate::derive::passes::RewriteScope;

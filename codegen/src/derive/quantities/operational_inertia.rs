@@ -1,4 +1,4 @@
-//! The operational-space inertia: what the end effector seems to weigh along and about the rows of the task.
+//! The operational-space inertia: the apparent inertia of the end effector along and about the rows of the task.
 //!
 //! ```text
 //! B_A = (J B^-1 J')^-1                                              (the book, Sect. 7.8, with the rows of J that make up the task)
@@ -53,7 +53,7 @@ pub fn operational_inertia(pool: &mut Pool, arm: &Arm, plan: &mut Plan, task: &[
     LdlFactors::new(pool, &mobility).inverse(pool)
 }
 
-/// Why an arm has none.
+/// The reason why an arm lacks the function.
 fn missing(model: &Model, with_parameters: bool) -> Option<String> {
     if let Some(reason) = Quantity::MISSING_WITHOUT_MASS(model, with_parameters) {
         return Some(reason);

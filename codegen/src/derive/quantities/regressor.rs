@@ -34,7 +34,7 @@ pub static REGRESSOR: Quantity = Quantity {
     interface: Some("Regressor"),
 };
 
-/// tau_known(q, dq, dqr, ddqr): what is left of tau without the parameters.
+/// tau_known(q, dq, dqr, ddqr): the torque of everything except the parameters.
 pub static KNOWN_TORQUE: Quantity = Quantity {
     name: "known_torque",
     symbol: Typeset::new("tau_known(q, dq, dqr, ddqr)", "\\tau_0(q, \\dot q, \\dot q_r, \\ddot q_r)"),

@@ -1,4 +1,4 @@
-//! The C face of inverse kinematics: a header of its own, and wrappers that stand beside `robot_ik.rs`.
+//! The C interface of inverse kinematics: a header, and wrappers for the module `robot_ik.rs`.
 //!
 //! Solutions cross as structs of one layout on both sides (`repr(C)`): numbers of the scalar, and 32 bits for everything else.
 
@@ -11,7 +11,7 @@ use crate::inverse_kinematics::{InverseKinematics, Target};
 use crate::kinds::Scalar;
 use crate::program::Module;
 
-/// The verdicts in the order of their numbers, and what C is told of each; nothing where that depends on the arm.
+/// The verdicts in the order of their numbers, each with its comment in C; `None` for a comment that depends on the arm.
 const VERDICTS: [(&str, Option<&str>); 5] = [
     ("Complete", Some("all solutions are listed, as far as the construction can tell")),
     ("Unreachable", Some("none was found; `miss` says by how much the construction missed")),
@@ -26,7 +26,7 @@ pub fn print_inverse_kinematics(module: &Module, found: &Result<InverseKinematic
     Some(CFace { header: header(module, found, origin), wrappers: wrappers(module, found, origin) })
 }
 
-/// What the headers of an arm are called, and what they are of.
+/// The names of an arm's headers and of their contents.
 pub(super) struct Names {
     pub(super) robot: String,
     pub(super) upper: String,
@@ -59,7 +59,7 @@ fn header(module: &Module, found: &InverseKinematics, origin: &Origin) -> String
     text + "\n#ifdef __cplusplus\n}\n#endif\n\n#endif\n"
 }
 
-/// Where the header came from, what it is of, and its guard.
+/// The origin of the header, its content, and its guard.
 pub(super) fn opening(names: &Names, found: &InverseKinematics, origin: &Origin) -> String {
     let upper = &names.upper;
     let text = said(&crate::emit::head::lines(
@@ -71,7 +71,7 @@ pub(super) fn opening(names: &Names, found: &InverseKinematics, origin: &Origin)
     text + &format!("#ifndef {guard}\n#define {guard}\n\n")
 }
 
-/// What the arm is to reach, in words.
+/// The target of the arm, in words.
 fn reached(target: Target) -> &'static str {
     match target {
         Target::Pose | Target::Planar => "pose",
@@ -109,7 +109,7 @@ pub(super) fn types(names: &Names, found: &InverseKinematics, way: &str) -> Stri
     )
 }
 
-/// The functions of both headers: what is said of each, and its declaration.
+/// The functions of both headers: documentation and declaration of each.
 pub(super) fn functions(names: &Names, found: &InverseKinematics) -> Vec<(String, String)> {
     let Names { robot, real, joints: dof, .. } = names;
     let mut about = vec![

@@ -1,7 +1,7 @@
-//! The header that finds all postures by itself: the module of Rust, translated, behind the declarations of `--c-abi`.
+//! The header that finds all postures by itself: the declarations of `--c-abi`, then the translated module of Rust.
 //!
-//! Each building block exists once, in Rust (`from_rust`); what is written here for C alone is what Rust takes from the crate `libm`, and the
-//! functions that a caller sees.
+//! Each building block exists once, in Rust (`from_rust`). This file adds, for C alone, the functions of the crate `libm` and the
+//! functions for callers.
 
 use super::from_rust::{translated, Translated};
 use super::inverse_kinematics::{functions, opening, said, types, Names};
@@ -33,10 +33,10 @@ const SINGLE: Library = Library {
     sin_cos: include_str!("solver/sin_cos_f32.h"),
 };
 
-/// The arctangent: what differs between the scalars stands in it as `@NAME@`.
+/// The arctangent. Parts that differ between the scalars are marked `@NAME@`.
 const ATAN2: &str = include_str!("solver/atan2.h");
 
-/// What stands in the arctangent of doubles, and of floats.
+/// These parts of the arctangent of doubles, and of floats.
 const IN_ATAN2: [(&str, [&str; 2]); 22] = [
     ("real", ["double", "float"]),
     ("f", ["", "f"]),
@@ -92,8 +92,8 @@ const IN_ATAN2: [(&str, [&str; 2]); 22] = [
     ("high_y", ["(uint32_t)(robot_bits(y) >> 32)", "robot_bits(y)"]),
 ];
 
-/// The header; where the arm has no construction, a comment that says why. An error is one of this program: a block says what the
-/// translation does not know.
+/// The header. For an arm without a construction it is a comment with the reason. An error is a fault of this program: a block
+/// uses syntax that the translation does not know.
 pub fn print(
     manipulator: &Manipulator,
     scalar: Scalar,

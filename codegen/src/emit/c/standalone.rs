@@ -28,7 +28,7 @@ const STD: &str = include_str!("sines/std.h");
 const FAST: &str = include_str!("sines/fast.h");
 const FUSED: &str = include_str!("fused.h");
 
-/// Lanes of a vector of angles: as many as every processor with vectors has, up to `VECTOR`.
+/// Lanes of a vector of angles. Every processor with vectors has this number, up to `VECTOR`.
 const OF_FOUR: &str = "#define ROBOT_VECTOR_LANES 4\n#define ROBOT_VECTOR_AT(from) {(from)[0], (from)[1], (from)[2], (from)[3]}";
 const OF_TWO: &str = "#define ROBOT_VECTOR_LANES 2\n#define ROBOT_VECTOR_AT(from) {(from)[0], (from)[1]}";
 

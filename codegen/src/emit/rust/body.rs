@@ -116,7 +116,7 @@ fn of_part(module: &Module, function: &Function, part: &BodyPart, number: usize)
     (text, format!("let [{}] = {own}({passed}[{}]);", list(&part.given), list(&part.taken)))
 }
 
-/// The text of the function `frame`, which has an empty body, filled with these lines between `before` and `behind`.
+/// The text of the function `frame` with these lines in its empty body, between `before` and `behind`.
 pub(super) fn framed(frame: TokenStream, before: &TokenStream, lines: &[String], behind: &TokenStream) -> String {
     let mut text = formatted(frame);
     text.truncate(text.trim_end().trim_end_matches('}').len());

@@ -14,7 +14,7 @@ use crate::kinds::{JointKind, Scalar};
 use crate::manipulator::{Joint, Manipulator};
 use crate::program::Module;
 
-/// The module's text; where the arm has no construction, a comment that says why.
+/// The module's text. For an arm without a construction it is a comment with the reason.
 pub fn print_inverse_kinematics(
     manipulator: &Manipulator,
     scalar: Scalar,
@@ -31,9 +31,9 @@ pub fn print_inverse_kinematics(
     }
 }
 
-/// The implementation of the runtime's trait, to follow those of the other traits: it names the module of inverse kinematics, which stands
-/// beside that of the robot, by its name. Nothing for an arm that has no construction, nor for a module without the kinematics that the trait
-/// builds on.
+/// The implementation of the runtime's trait, to follow the other traits. It refers to the module of inverse kinematics, next to
+/// the robot's, by its name. Empty for an arm without a construction, and for a module without the kinematics that the trait
+/// needs.
 pub fn print_inverse_kinematics_trait(module: &Module, found: &Result<InverseKinematics, String>, ik: &str) -> String {
     let Some(found) = found.as_ref().ok().filter(|_| is_implemented(module, "Kinematics")) else { return String::new() };
     let signs = found.choices.iter().filter(|choice| choice.ways.len() == 2).fold(0u16, |signs, choice| signs | 1 << choice.bit);
@@ -110,8 +110,8 @@ pub fn print_inverse_kinematics_trait(module: &Module, found: &Result<InverseKin
     "\n".to_owned() + &format(text)
 }
 
-/// The tests of inverse kinematics, to follow those of the module in `robot_test.rs`: `file` is that of the module of inverse kinematics. Nothing
-/// for an arm that has no construction.
+/// The tests of inverse kinematics, to follow the module's tests in `robot_test.rs`. `file` contains the module of inverse
+/// kinematics. Empty for an arm without a construction.
 pub fn print_inverse_kinematics_test(module: &Module, found: &Result<InverseKinematics, String>, file: &str) -> String {
     let Ok(found) = found else { return String::new() };
     // Units of rounding times a condition that most random postures have.
@@ -133,7 +133,7 @@ pub fn print_inverse_kinematics_test(module: &Module, found: &Result<InverseKine
         .replace("{columns}", &columns)
 }
 
-/// What stands before the module of the blocks.
+/// The items before the module of the blocks.
 fn exported(found: &InverseKinematics) -> TokenStream {
     let redundancy = found.redundancy.as_ref().map(|_| quote!(inverse_kinematics_redundancy,));
     quote! {
@@ -151,7 +151,7 @@ fn solver(joints: &[Joint], scalar: Scalar, found: &InverseKinematics) -> String
     text + "}\n"
 }
 
-/// What stands in the module of the blocks: constants, one function, and the blocks that it calls.
+/// The items in the module of the blocks: constants, one function, and the blocks that it calls.
 pub(in crate::emit) fn items(joints: &[Joint], scalar: Scalar, found: &InverseKinematics) -> String {
     let mut text = format(constants(joints, scalar, found));
     text.push('\n');
@@ -266,7 +266,7 @@ fn constants(joints: &[Joint], scalar: Scalar, found: &InverseKinematics) -> Tok
     }
 }
 
-/// The documentation of `BRANCHES`: what each bit says; `way`: what holds the constants of the loop, in words.
+/// The documentation of `BRANCHES`: the meaning of each bit. `way` names the item with the constants of the loop, in words.
 pub(in crate::emit) fn meanings(found: &InverseKinematics, way: &str) -> Vec<String> {
     if found.choices.is_empty() {
         return vec![
@@ -321,7 +321,7 @@ fn arrangement(way: &Arrangement, scalar: Scalar) -> TokenStream {
     }
 }
 
-/// What the argument `t` is.
+/// The meaning of the argument `t`.
 pub(in crate::emit) fn about_target(target: Target) -> &'static str {
     match target {
         Target::Pose => {
@@ -341,7 +341,7 @@ pub(in crate::emit) fn about_target(target: Target) -> &'static str {
     }
 }
 
-/// What is refused as `Invalid`.
+/// The targets that are refused as `Invalid`.
 pub(in crate::emit) fn what_is_invalid(found: &InverseKinematics) -> &'static str {
     match (found.target, &found.redundancy) {
         (Target::Position, None) => "an entry of t is not finite",
@@ -351,7 +351,7 @@ pub(in crate::emit) fn what_is_invalid(found: &InverseKinematics) -> &'static st
     }
 }
 
-/// What the argument beside the pose is, of a redundant arm.
+/// The meaning of the argument after the pose, for a redundant arm.
 pub(in crate::emit) fn about_redundancy(found: &InverseKinematics) -> Option<String> {
     Some(match found.redundancy.as_ref()? {
         Redundancy::Joint(given) => {
@@ -557,7 +557,7 @@ fn position(found: &InverseKinematics, way: &Arrangement, case: &Regional) -> To
     }
 }
 
-/// What becomes of the solutions of all joints in the loop: those of the arm, in their order.
+/// The expression that turns solutions of the loop's joints into solutions of the arm, in their order.
 fn conclusion(found: &InverseKinematics, dof: usize) -> TokenStream {
     // Solutions without branches come in the order of their joint variables.
     let by_angle = matches!(found.construction, Construction::TwoSlides(..));
@@ -580,7 +580,7 @@ fn conclusion(found: &InverseKinematics, dof: usize) -> TokenStream {
     }
 }
 
-/// So many joints there are with that which is given: with a virtual joint more than the arm has.
+/// The number of joints including the given joint. With a virtual joint it exceeds the arm's.
 fn joints_with_given(others: usize, dof: usize) -> TokenStream {
     match others + 1 {
         all if all == dof => quote!(DOF),
@@ -642,7 +642,7 @@ fn arguments_read(found: &InverseKinematics) -> TokenStream {
     }
 }
 
-/// The function that gives the redundancy of a posture, where there is one.
+/// The function that returns the redundancy of a posture, for a redundant arm.
 fn redundancy_of_a_posture(found: &InverseKinematics) -> Option<TokenStream> {
     found.redundancy.as_ref().map(|redundancy| {
         let value = match redundancy {

@@ -34,7 +34,7 @@ pub(super) fn implementation(module: &Module) -> Option<TokenStream> {
     })
 }
 
-/// A robot that implements the traits: what it holds of its own, and does not take from the description.
+/// A robot that implements the traits, and the values that it has in fields instead of taking them from the description.
 struct Robot {
     name: &'static str,
     title: &'static str,

@@ -8,9 +8,10 @@ use armgen_runtime::{
         Algorithm, Clik, DampedLeastSquares, Integration, JacobianInverse, JacobianTranspose, JointLimits, JointRangeDistance,
         Manipulability, NoObjective, Objective, PseudoInverse, SecondOrder,
     },
+    contact::{parameter_spread, MomentumObserver, Reaction, Threshold},
     control::{
-        Adaptive, BoundaryLayer, Controller, Interval, InverseDynamics, NullSpace, OperationalSpace, PdGravity, Robust,
-        TorqueLimits,
+        Adaptive, Admittance, BoundaryLayer, Controller, FrictionCompensation, HandGuiding, Impedance, Interval, InverseDynamics,
+        NullSpace, OperationalSpace, PdGravity, Robust, TorqueLimits, Walls,
     },
     inverse_kinematics::{follow as follow_posture, follow_redundant},
     linalg::{self, Cholesky, Damping, DampingBelow, RightInverse},
@@ -19,7 +20,8 @@ use armgen_runtime::{
     orientation,
     reference::{JointReference, OperationalReference, Pose, State},
     robot::{
-        array, matrix, Dynamics, InverseKinematics, JointRanges, Kinematics, Postures, RedundantInverseKinematics, Regressor,
+        array, matrix, CoriolisTransposeTimes, Dynamics, InverseKinematics, JointRanges, Kinematics, Momentum, Postures,
+        RedundantInverseKinematics, Regressor,
     },
     task::{Row, Task},
     trajectory::{
@@ -81,6 +83,28 @@ where
 fn every_range<R: JointRanges<N>, const N: usize>(robot: &R) {
     keep((JointRanges::turns(robot), JointRanges::position_limits(robot)));
     keep(JointRanges::unwrapped(robot, &vector(), &vector()));
+}
+
+/// Observes contacts and answers them.
+#[inline(never)]
+pub(crate) fn every_observation<R, const N: usize>(robot: &R)
+where
+    R: Dynamics<N> + Momentum<N> + CoriolisTransposeTimes<N>,
+{
+    let state = State { q: vector(), dq: vector() };
+    let threshold = Threshold::<R::Real, N> { spread: vector(), resolution: vector(), coulomb: vector(), load: vector() };
+    let y = SMatrix::<R::Real, N, 6>::from_fn(|_, _| number());
+    let parameters = parameter_spread(&y, &SMatrix::<R::Real, 6, 6>::from_fn(|_, _| number()));
+    keep(Threshold::at(&threshold, &state, &vector(), &parameters));
+    if let Ok(mut observer) = MomentumObserver::new(numbers(), number(), threshold, black_box(3)) {
+        keep(MomentumObserver::step(&mut observer, robot, &state, &vector(), &parameters));
+        keep(*MomentumObserver::residual(&observer));
+    }
+    if let (Ok(float), Ok(stop)) = (HandGuiding::new(numbers()), PdGravity::new(numbers(), numbers())) {
+        for mut reaction in black_box([Reaction::Float(float), Reaction::Stop(stop)]) {
+            keep(Reaction::torque(&mut reaction, robot, &vector(), &state));
+        }
+    }
 }
 
 /// Calls every public function that runs on a microcontroller, for one robot and task.
@@ -340,6 +364,7 @@ fn controllers<R, const N: usize, const M: usize, const P: usize>(
         let bounded = Adaptive::with_frozen(Adaptive::with_projection(adaptive, interval), black_box([true; P]));
         keep(Adaptive::torque(&mut Adaptive::with_torque_limits(bounded, limits), robot, joint, state));
     }
+    hands::<R, N, M, P>(robot, task, state, reference, limits);
     let operational = OperationalSpace::new(task, numbers(), numbers(), numbers(), number());
     let operational = operational.and_then(|operational| OperationalSpace::with_integral_limit(operational, numbers()));
     if let (Ok(mut operational), Ok(damping)) = (operational, Damping::below(number()).at_most(number())) {
@@ -351,5 +376,39 @@ fn controllers<R, const N: usize, const M: usize, const P: usize>(
             let mut redundant = OperationalSpace::with_null_space(damped, null_space);
             keep(OperationalSpace::torque(&mut redundant, robot, reference, state));
         }
+    }
+}
+
+fn hands<R, const N: usize, const M: usize, const P: usize>(
+    robot: &R,
+    task: Task<M>,
+    state: &State<R::Real, N>,
+    reference: &OperationalReference<R::Real>,
+    limits: TorqueLimits<R::Real, N>,
+) where
+    R: Regressor<N, P>,
+{
+    let Ok(friction) = FrictionCompensation::new(number(), number()) else { return };
+    let impedance = Impedance::new(task, numbers(), number()).and_then(|law| Impedance::with_slowest(law, number()));
+    if let (Ok(impedance), Ok(null_space)) = (impedance, NullSpace::new(numbers(), numbers(), numbers())) {
+        keep(Impedance::torque(&impedance, robot, reference, state));
+        keep(Controller::torque(&mut black_box(impedance), robot, reference, state));
+        let full = Impedance::with_friction_compensation(Impedance::with_null_space(impedance, null_space), friction);
+        let Ok(full) = Impedance::with_damping(Impedance::with_torque_limits(full, limits), numbers()) else { return };
+        keep(Impedance::torque(&full, robot, reference, state));
+    }
+    let walls = Walls::new(numbers(), numbers(), numbers(), numbers(), numbers());
+    if let (Ok(guiding), Ok(walls)) = (HandGuiding::new(numbers()), walls) {
+        keep(HandGuiding::torque(&mut black_box(guiding), robot, state));
+        keep(Walls::energy(&walls, &state.q));
+        let full = HandGuiding::with_friction_compensation(HandGuiding::with_walls(guiding, walls), friction);
+        let full = HandGuiding::with_speed_cap(HandGuiding::with_torque_limits(full, limits), numbers(), numbers());
+        let Ok(full) = full.and_then(|law| HandGuiding::with_hold(law, numbers(), numbers(), numbers())) else { return };
+        let mut full = HandGuiding::with_anchor(full, vector());
+        keep((HandGuiding::torque(&mut full, robot, state), HandGuiding::anchor(&full).copied()));
+        keep(Controller::torque(&mut full, robot, &(), state));
+    }
+    if let Ok(mut admittance) = Admittance::new(task, numbers(), numbers(), numbers(), number()) {
+        keep((Admittance::step(&mut admittance, reference, &vector()), *Admittance::displacement(&admittance)));
     }
 }
