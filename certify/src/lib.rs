@@ -72,7 +72,7 @@ pub fn certify(source: &Source, generated: &Generated) -> Report {
 pub fn certify_in(source: &Source, generated: &Generated, language: Language) -> Report {
     let text = generated.in_language(language);
     let text = ModuleText { language, text: &text };
-    verify_with(source, text, Claims::from_numbers(&generated.constants), Effort::default())
+    verify_by_constants(source, text, Claims::from_numbers(&generated.constants))
 }
 
 /// The diagnostic that a function's value can exceed the scalar's range within the joint limits, with its position.
@@ -89,7 +89,7 @@ pub fn beyond_the_scalar(source: &Source, function: &str, scalar: Scalar) -> Dia
 pub fn document_bounds(source: &Source, generated: &mut Generated) -> Result<(), String> {
     let manipulator = valid(source)?;
     let module = Module::read(&generated.module)?;
-    let found = bounds::of(&manipulator, &module, &Claims::from_numbers(&generated.constants));
+    let found = bounds::of(&manipulator, &module, &Claims::from_numbers(&generated.constants)?);
     let bounds::Notes { head, functions } = bounds::notes(&found, module.sizes().gravity);
     generated.annotate(&Notes { head, functions });
     Ok(())
@@ -98,7 +98,7 @@ pub fn document_bounds(source: &Source, generated: &mut Generated) -> Result<(),
 /// The companion of a generated module, with a running error bound for each function: see [`companion`](mod@companion). `import` must
 /// bring the module's types into scope: `use super::robot::*;`.
 pub fn companion(generated: &Generated, import: &str) -> Result<String, String> {
-    companion::companion(&Module::read(&generated.module)?, &Claims::from_numbers(&generated.constants), import)
+    companion::companion(&Module::read(&generated.module)?, &Claims::from_numbers(&generated.constants)?, import)
 }
 
 /// The final part of the companion for emitted inverse kinematics: see [`companion::of_inverse_kinematics`].
@@ -155,11 +155,22 @@ fn valid(source: &Source) -> Result<Manipulator, String> {
 /// Verifies with the generator's constants. A module that was generated without some passes has other constants; its head names them.
 fn verify_by_generator(source: &Source, text: ModuleText<'_>, module: &Module) -> Report {
     let without = module.listed("without").iter().flatten().filter_map(|name| Pass::named(name)).collect();
-    verify_with(source, text, generated_claims(source, module.real, without), Effort::default())
+    verify_by_constants(source, text, generated_claims(source, module.real, without))
+}
+
+/// Verifies with the generator's constants, unless the checker cannot read them.
+fn verify_by_constants(source: &Source, text: ModuleText<'_>, claims: Result<Claims, String>) -> Report {
+    match claims {
+        Ok(claims) => verify_with(source, text, claims, Effort::default()),
+        Err(fault) => Report {
+            faults: vec![format!("the constants of the generator: {fault}")],
+            ..Report::of(hash(source.text()), hash(text.text))
+        },
+    }
 }
 
 /// The constants of the generator for a scalar, without some passes.
-fn generated_claims(source: &Source, real: Float, without: Passes) -> Claims {
+fn generated_claims(source: &Source, real: Float, without: Passes) -> Result<Claims, String> {
     let scalar = match real {
         Float::F32 => Scalar::F32,
         Float::F64 => Scalar::F64,
@@ -167,5 +178,5 @@ fn generated_claims(source: &Source, real: Float, without: Passes) -> Claims {
     #[allow(clippy::needless_update)]
     let options = Options { scalar, without, ..Default::default() };
     let (generated, _) = armgen_codegen::generate(source, &options);
-    generated.map_or(Claims::none(), |generated| Claims::from_numbers(&generated.constants))
+    generated.map_or(Ok(Claims::none()), |generated| Claims::from_numbers(&generated.constants))
 }

@@ -224,6 +224,24 @@ pub fn arm_with_general_angles(name: &str, dof: usize, random: &mut Random) -> S
     drawn(name, dof, general_angle, random)
 }
 
+/// A chain of prismatic joints in general directions, with general bodies.
+pub fn slides(name: &str, dof: usize, random: &mut Random) -> String {
+    let mut text = format!("name: {name}\nconvention: standard\ngravity: [0.1, -0.2, -9.81]\njoints:\n");
+    for i in 0..dof {
+        let mut of = |low: i64, high: i64| decimal(random.whole(low, high), 3);
+        let (alpha, theta) = (of(-1500, 1500), of(-1500, 1500));
+        let (a, d, mass) = (of(-400, 400), of(-400, 400), of(500, 9000));
+        let (x, y, z) = (of(-200, 200), of(-200, 200), of(-200, 200));
+        writeln!(
+            text,
+            "  - {{name: j{i}, type: prismatic, a: {a}, alpha: {alpha}, d: {d}, theta: {theta}, link: {{mass: {mass}, com: [{x}, {y}, {z}], \
+             inertia: {{xx: 0.1, yy: 0.11, zz: 0.12, xy: 0.003, xz: -0.002, yz: 0.004}}}}}}"
+        )
+        .expect("text");
+    }
+    text
+}
+
 /// A chain of joints, `r` revolute and `p` prismatic, whose angles are decimals that differ from joint to joint.
 pub fn chain_with_general_angles(joints: &str) -> String {
     let mut text = format!("name: chain_{joints}\nconvention: standard\ngravity: [1, 2, -9.81]\njoints:\n");

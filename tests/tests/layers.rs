@@ -224,7 +224,7 @@ const VERIFY: Layers = &[
         ],
     ),
     ("report", &["bounds", "check", "formula", "ranges"]),
-    ("certificate", &["bounds", "check", "claims", "formula", "reader", "report"]),
+    ("certificate", &["bounds", "check", "claims", "enclosure", "formula", "reader", "report"]),
     ("plain", &["arithmetic", "base", "element", "enclosure", "equations", "float", "formula", "ranges", "reference"]),
     (
         "checker",

@@ -127,6 +127,18 @@ fn arms_with_general_angles_alone_equal_their_equations() {
     }
 }
 
+/// Slides in directions without a zero: all that their functions divide by are constants, each pivot made of those before it.
+#[test]
+#[ignore = "wide"]
+fn chains_of_slides_equal_their_equations() {
+    for joints in 1..=12 {
+        println!("{joints} slides");
+        let seed = 100 + joints as u64;
+        let text = random::slides(&format!("slides_{joints}"), joints, &mut Random::new(seed));
+        certify_arm(seed, joints, &text, &mut Seen::default());
+    }
+}
+
 /// Names the arm in any panic.
 struct Named<'a>(u64, &'a str);
 
@@ -165,7 +177,7 @@ fn certify_arm(seed: u64, joints: usize, text: &str, seen: &mut Seen) {
     let generated = generated.unwrap_or_else(|| panic!("seed {seed}:\n{}\n{text}", said.render(&source, Colour::Never)));
     let generating = processor_time() - start;
     let exact_points = usize::from(seed.is_multiple_of(EXACT.0) && joints <= EXACT.1);
-    let claims = Claims::from_numbers(&generated.constants);
+    let claims = Claims::from_numbers(&generated.constants).expect("short formulas");
     let report = verify_with(&source, &generated.module, claims, Effort { points: POINTS, exact_points, seed });
     let certifying = processor_time() - start - generating;
     assert!(report.passed(), "seed {seed}: {}\n{text}", report.first_fault().unwrap_or_default());

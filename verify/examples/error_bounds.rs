@@ -88,7 +88,7 @@ fn table(path: &str, scalar: Scalar, states: u64, functions: &[String]) -> Resul
     };
     let (manipulator, _) = validate::read_for(&source, scalar).0.ok_or("not a valid description")?;
     let module = Module::read(&generated.module)?;
-    let mut subjects = Subject::all(&manipulator, &module, &Claims::from_numbers(&generated.constants))?;
+    let mut subjects = Subject::all(&manipulator, &module, &Claims::from_numbers(&generated.constants)?)?;
     subjects.retain(|subject| functions.is_empty() || functions.contains(&subject.program.name));
     let workers = std::thread::available_parallelism().map_or(1, usize::from) as u64;
     let batches = states.div_ceil(workers * LANES as u64);

@@ -18,7 +18,7 @@ fn main() {
             let Some(generated) = armgen_codegen::generate(&source, &options).0 else { continue };
             let Some((manipulator, _)) = armgen_codegen::validate::read_for(&source, scalar).0 else { continue };
             let joints = manipulator.joints.len();
-            let claims = Claims::from_numbers(&generated.constants);
+            let claims = Claims::from_numbers(&generated.constants).expect("short formulas");
             let effort = Effort { points: 1, exact_points: 0, seed: 1 };
             let prepared = match prepare(manipulator, &generated.module, claims.clone(), effort) {
                 Ok(prepared) => prepared,

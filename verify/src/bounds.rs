@@ -229,7 +229,7 @@ pub fn domain_of(manipulator: &Manipulator, module: &Module) -> Domain {
 pub fn of(manipulator: &Manipulator, module: &Module, claims: &Claims) -> BTreeMap<String, Bound> {
     let domain = domain_of(manipulator, module);
     let bound = |(name, program): &(&str, &Program)| {
-        let values = claims.resolve(name, &program.literals, module.real).values;
+        let values = claims.resolve(name, &program.literals, module.real).values.clone();
         (name.to_string(), of_function(program, &values, &domain, module, claims))
     };
     parallel_map(&module.programs().collect::<Vec<_>>(), bound).into_iter().collect()

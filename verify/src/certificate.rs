@@ -9,6 +9,7 @@ use serde_json::Value;
 use crate::bounds::two_digits;
 use crate::check::Check;
 use crate::claims::Claims;
+use crate::enclosure::bits_before_the_point;
 use crate::formula::definitions::{self, Definitions};
 use crate::reader::Module;
 use crate::report::{Exact, Report, Verdict};
@@ -296,7 +297,7 @@ impl Certificate {
             functions.chain(self.constants.iter().map(|c| of(&c.name, &c.literals))).collect();
         let mut definitions = Definitions::default();
         for (index, text) in &self.definitions {
-            definitions.define(*index, text)?;
+            definitions.define(*index, text, bits_before_the_point)?;
         }
         Claims::with_definitions(lists.iter().map(|(name, texts)| (name.as_str(), texts.as_slice())), &definitions)
     }

@@ -98,7 +98,9 @@ impl<K: Arithmetic> Point<K> {
     /// The first entry of a program that is not what the equations say, and in which way; `None` if there is none.
     fn difference(&self, program: &Program, literals: &[Formula], base: bool) -> Option<(usize, &'static str)> {
         let expected = self.reference.values.get(&program.name)?;
-        let Some(literals) = self.literals_of(program, literals) else { return Some((0, "has a constant that divides by 0")) };
+        let Some(literals) = self.literals_of(program, literals) else {
+            return Some((0, "has a constant that divides by 0 or is too long"));
+        };
         let longest: usize = expected.iter().map(Element::bits).max().unwrap_or(0);
         let values = program.run_within(Limits::beside(longest, expected.len()), &self.reference.state, &literals);
         if let Some(entry) = values.iter().position(Option::is_none) {
@@ -575,7 +577,7 @@ impl Odds {
         };
         let literals: Vec<(&Program, Vec<Formula>)> = (module.functions.iter().filter_map(fitting))
             .map(|program| {
-                let values = claims.resolve(&program.name, &program.literals, module.real).values;
+                let values = claims.resolve(&program.name, &program.literals, module.real).values.clone();
                 (program, program.exact_literals(&values))
             })
             .collect();

@@ -5,11 +5,12 @@
 //! must equal the equations exactly. A literal without a matching claim has its decimal value.
 
 use std::collections::{BTreeMap, BTreeSet};
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
 use armgen_description::exact::{self, Number};
 
 use crate::element::Element;
-use crate::enclosure::Float;
+use crate::enclosure::{bits_before_the_point, Float};
 use crate::formula::definitions::Definitions;
 use crate::formula::parse::decimal;
 use crate::formula::{Formula, Rational};
@@ -20,6 +21,41 @@ use crate::reader::Module;
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Claims {
     by_name: BTreeMap<String, Vec<Formula>>,
+    known: Known,
+}
+
+/// The literals of functions that were resolved before, by name: the odds, the points, the comparison and the bounds all need their values, and each
+/// value takes an enclosure.
+#[derive(Debug, Default)]
+struct Known(Mutex<BTreeMap<String, (Float, Vec<Literal>, Arc<Resolved>)>>);
+
+impl Known {
+    fn all(&self) -> MutexGuard<'_, BTreeMap<String, (Float, Vec<Literal>, Arc<Resolved>)>> {
+        self.0.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    fn get(&self, name: &str, literals: &[Literal], real: Float) -> Option<Arc<Resolved>> {
+        let all = self.all();
+        let (of_real, of_literals, resolved) = all.get(name)?;
+        (*of_real == real && of_literals == literals).then(|| resolved.clone())
+    }
+
+    fn insert(&self, name: &str, literals: &[Literal], real: Float, resolved: &Arc<Resolved>) {
+        self.all().insert(name.to_string(), (real, literals.to_vec(), resolved.clone()));
+    }
+}
+
+impl Clone for Known {
+    fn clone(&self) -> Known {
+        Known(Mutex::new(self.all().clone()))
+    }
+}
+
+/// Claims are equal whatever was resolved before.
+impl PartialEq for Known {
+    fn eq(&self, _: &Known) -> bool {
+        true
+    }
 }
 
 impl Claims {
@@ -28,14 +64,13 @@ impl Claims {
         Claims::default()
     }
 
-    /// The constants of a generator. It omits a constant that exceeds the maximum length of a formula; the literal then has its decimal value,
-    /// and the function does not equal the equations.
-    pub fn from_numbers(constants: &BTreeMap<String, Vec<Number>>) -> Claims {
-        Claims::read(constants).0
+    /// The constants of a generator. An error if the formula of one exceeds a limit of the checker: without it nothing can be verified.
+    pub fn from_numbers(constants: &BTreeMap<String, Vec<Number>>) -> Result<Claims, String> {
+        Claims::read(constants).map(|(claims, _)| claims)
     }
 
     /// The same with the definitions that the formulas use.
-    fn read(constants: &BTreeMap<String, Vec<Number>>) -> (Claims, Definitions) {
+    fn read(constants: &BTreeMap<String, Vec<Number>>) -> Result<(Claims, Definitions), String> {
         let mut texts = exact::Definitions::default();
         let lists: Vec<(&String, Vec<String>)> = constants
             .iter()
@@ -43,12 +78,10 @@ impl Claims {
             .collect();
         let mut definitions = Definitions::default();
         for (index, text) in texts.texts().iter().enumerate() {
-            // Without a definition, its users are omitted, too.
-            let _ = definitions.define(index, text);
+            definitions.define(index, text, bits_before_the_point)?;
         }
-        let read = |text: &String| definitions.formula(text).ok();
-        let of = |(name, texts): (&String, Vec<String>)| (name.clone(), texts.iter().filter_map(read).collect());
-        (Claims { by_name: lists.into_iter().map(of).collect() }, definitions)
+        let lists = lists.iter().map(|(name, texts)| (name.as_str(), texts.as_slice()));
+        Ok((Claims::with_definitions(lists, &definitions)?, definitions))
     }
 
     /// Formulas without definitions, by function.
@@ -66,21 +99,26 @@ impl Claims {
             let formulas: Result<Vec<Formula>, String> = texts.iter().map(|text| definitions.formula(text)).collect();
             by_name.insert(name.to_string(), formulas.map_err(|e| format!("`{name}`: {e}"))?);
         }
-        Ok(Claims { by_name })
+        Ok(Claims { by_name, known: Known::default() })
     }
 
     /// The claims for literals of the module, including alternative claims for the same literals, and those for the entries of `constants`.
     /// Other claims have no influence.
     pub fn used(&self, module: &Module, constants: &[&str]) -> Claims {
-        let mut by_name = BTreeMap::new();
+        let (mut by_name, known) = (BTreeMap::new(), Known::default());
         for (name, program) in module.programs().filter(|(name, _)| self.by_name.contains_key(*name)) {
-            let Resolved { values, others } = self.resolve(name, &program.literals, module.real);
-            by_name.insert(name.to_string(), values.into_iter().chain(others.into_values().flatten()).collect());
+            let resolved = self.resolve(name, &program.literals, module.real);
+            let Resolved { values, others } = &*resolved;
+            by_name.insert(name.to_string(), values.iter().chain(others.values().flatten()).cloned().collect());
+            // One value for each literal is resolved by position.
+            if others.is_empty() {
+                known.insert(name, &program.literals, module.real, &resolved);
+            }
         }
         for name in constants {
             by_name.insert((*name).to_string(), self.of(name).to_vec());
         }
-        Claims { by_name }
+        Claims { by_name, known }
     }
 
     /// A useless claim of a certificate: a constant that does not round to its literal, or that is closer to a boundary between floats than any
@@ -109,7 +147,16 @@ impl Claims {
     }
 
     /// The claimed values of a function's literals; each literal is the float nearest to its value.
-    pub fn resolve(&self, name: &str, literals: &[Literal], real: Float) -> Resolved {
+    pub fn resolve(&self, name: &str, literals: &[Literal], real: Float) -> Arc<Resolved> {
+        if let Some(known) = self.known.get(name, literals, real) {
+            return known;
+        }
+        let resolved = Arc::new(self.resolved(name, literals, real));
+        self.known.insert(name, literals, real, &resolved);
+        resolved
+    }
+
+    fn resolved(&self, name: &str, literals: &[Literal], real: Float) -> Resolved {
         let claims = self.of(name);
         // By position, if the certificate lists a value for each literal.
         let in_order = claims.len() == literals.len()
@@ -219,7 +266,7 @@ mod tests {
             let path = format!("{}/../{name}.yaml", env!("CARGO_MANIFEST_DIR"));
             let source = Source::new("robot.yaml", std::fs::read_to_string(path).expect("a robot"));
             let generated = armgen_codegen::generate(&source, &Options::default()).0.expect("a module");
-            let (_, definitions) = Claims::read(&generated.constants);
+            let (_, definitions) = Claims::read(&generated.constants).expect("short formulas");
             println!("{name}: {:.4} of what formulas may cost", definitions.spent());
             assert!(definitions.spent() < 0.1, "{name}");
         }

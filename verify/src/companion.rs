@@ -316,7 +316,7 @@ pub fn companion(module: &Module, claims: &Claims, import: &str) -> Result<Strin
     for (name, function) in &module.functions {
         let program = &function.as_ref().map_err(|e| format!("`{name}`: {e}"))?.program;
         let (promise, _) = Promise::of(name).ok_or(format!("`{name}` is not known"))?;
-        let values = claims.resolve(name, &program.literals, module.real).values;
+        let values = claims.resolve(name, &program.literals, module.real).values.clone();
         let table = Table::of(program, &literal_errors(program, &values, module.real), module.real)?;
         write_function(&mut text, program, &table, promise, module);
     }

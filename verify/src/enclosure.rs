@@ -35,6 +35,16 @@ pub fn enclose(formula: &Formula, bits: usize) -> Option<(Rational, Rational)> {
     })
 }
 
+/// The number of bits of a constant before the point; `None` if it is undefined or out of reach.
+pub(crate) fn bits_before_the_point(formula: &Formula) -> Option<usize> {
+    // The first enclosures are those that a float's digits need.
+    let workings = GUARDS.into_iter().map(|guard| PRECISIONS[0] + guard).chain([PRECISIONS[PRECISIONS.len() - 1]]);
+    workings.into_iter().find_map(|working| {
+        let Interval { low, high } = interval(formula, working)?;
+        Some((low.abs().max(high.abs()) >> working).bit_len())
+    })
+}
+
 /// Sine and cosine of a fraction, as integers over 2^bits, and the number of bits; the error is below two units of 2^-`fine`.
 pub fn sine_cosine_of(angle: &Rational, fine: usize) -> Option<(IBig, IBig, usize)> {
     let bits = fine + 8;
@@ -106,7 +116,7 @@ fn interval(formula: &Formula, bits: usize) -> Option<Interval> {
         Formula::Defined(definition) => definition.enclosure(bits, |formula| interval(formula, bits))?,
         Formula::Sum(terms) => {
             let mut sum = exact(IBig::ZERO);
-            for term in terms {
+            for term in terms.iter() {
                 let term = interval(term, bits)?;
                 sum = Interval { low: sum.low + term.low, high: sum.high + term.high };
             }
@@ -114,7 +124,7 @@ fn interval(formula: &Formula, bits: usize) -> Option<Interval> {
         }
         Formula::Product(factors) => {
             let mut product = exact(IBig::ONE << bits);
-            for factor in factors {
+            for factor in factors.iter() {
                 product = multiply(&product, &interval(factor, bits)?, bits);
             }
             product
@@ -435,7 +445,7 @@ mod tests {
         for _ in 0..2 {
             for text in texts {
                 let mut definitions = definitions::Definitions::default();
-                definitions.define(0, text).expect("a definition");
+                definitions.define(0, text, bits_before_the_point).expect("a definition");
                 for function in ["sin", "cos"] {
                     let by_name = Formula::parse_with(&format!("{function}(k0)"), &definitions).expect("a formula");
                     let plain = parse(&format!("{function}({text})"));

@@ -110,7 +110,7 @@ impl Subject {
         let domain = domain_of(manipulator, module);
         let of = |(name, function): &(String, Result<Function, String>)| {
             let program = function.as_ref().map_err(|e| format!("`{name}`: {e}"))?.program.clone();
-            let values = claims.resolve(name, &program.literals, module.real).values;
+            let values = claims.resolve(name, &program.literals, module.real).values.clone();
             let errors = literal_errors(&program, &values, module.real);
             let exact: Option<Vec<Wide>> = program.exact_literals(&values).iter().map(Wide::from_formula).collect();
             let exact = exact.ok_or(format!("`{name}`: a literal out of reach"))?;

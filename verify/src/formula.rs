@@ -19,6 +19,9 @@ use dashu_int::{IBig, UBig};
 use crate::element::Element;
 use definitions::{Defined, Definition};
 
+/// Maximum number of bits of an exact value.
+pub(crate) const MOST_BITS: usize = 1 << 20;
+
 /// An exact fraction.
 pub type Rational = dashu_ratio::RBig;
 
@@ -67,10 +70,10 @@ pub enum Formula {
     Cosine(Box<Formula>),
     /// The angle in rad whose tangent is this fraction between 0 and 1.
     Arctangent(Rational),
-    /// A sum.
-    Sum(Vec<Formula>),
+    /// A sum. Long ones are copied many times, so that copies share the terms.
+    Sum(Arc<[Formula]>),
     /// A product.
-    Product(Vec<Formula>),
+    Product(Arc<[Formula]>),
     /// An integer power.
     Power(Box<Formula>, i32),
     /// A formula with a definition.
@@ -97,8 +100,8 @@ impl Formula {
         }
     }
 
-    /// The value for given values of fractions, roots, pi and angles (sine, cosine); `None` without such a value or for a division by 0. `defined`
-    /// caches the values of definitions, for fixed values of the others.
+    /// The value for given values of fractions, roots, pi and angles (sine, cosine); `None` without such a value, for a division by 0, or where a
+    /// number on the way is longer than any number of a robot. `defined` caches the values of definitions, for fixed values of the others.
     pub fn evaluate<E: Element>(
         &self,
         rational: &dyn Fn(&Rational) -> Option<E>,
@@ -108,6 +111,8 @@ impl Formula {
         defined: &Defined<E>,
     ) -> Option<E> {
         let of = |formula: &Formula| formula.evaluate(rational, root, pi, angle, defined);
+        // Definitions can square a fraction again and again.
+        let short = |value: E| (value.bits() <= MOST_BITS).then_some(value);
         match self {
             Formula::Defined(definition) => defined.get(definition, of),
             Formula::Rational(value) => rational(value),
@@ -119,16 +124,16 @@ impl Formula {
             Formula::Arctangent(_) => Some(angle(self)?.0),
             Formula::Sum(terms) => {
                 let (first, rest) = terms.split_first()?;
-                rest.iter().try_fold(of(first)?, |sum, term| Some(sum.plus(&of(term)?)))
+                rest.iter().try_fold(of(first)?, |sum, term| short(sum.plus(&of(term)?)))
             }
             Formula::Product(factors) => {
                 let (first, rest) = factors.split_first()?;
-                rest.iter().try_fold(of(first)?, |product, factor| Some(product.times(&of(factor)?)))
+                rest.iter().try_fold(of(first)?, |product, factor| short(product.times(&of(factor)?)))
             }
             Formula::Power(base, exponent) => {
                 let base = of(base)?;
                 let one = rational(&Rational::ONE)?;
-                let power = (0..exponent.unsigned_abs()).fold(one, |power, _| power.times(&base));
+                let power = (0..exponent.unsigned_abs()).try_fold(one, |power, _| short(power.times(&base)))?;
                 if *exponent < 0 {
                     power.inverse()
                 } else {
@@ -148,7 +153,7 @@ impl Formula {
         let mut under_root = UBig::ONE;
         let mut factors = Vec::new();
         for formula in formulas {
-            let parts = if let Formula::Product(parts) = formula { parts } else { vec![formula] };
+            let parts = if let Formula::Product(parts) = formula { parts.to_vec() } else { vec![formula] };
             for part in parts {
                 match part {
                     Formula::Rational(value) => scale *= value,
@@ -173,7 +178,7 @@ impl Formula {
         if factors.len() == 1 {
             factors.remove(0)
         } else {
-            Formula::Product(factors)
+            Formula::Product(factors.into())
         }
     }
 
@@ -229,7 +234,7 @@ impl Formula {
                 factor.clone().abs().is_one() && angle.1.replace(sign).is_none()
             }
             Formula::Sum(terms) => terms.iter().all(|term| term.add_turns(factor, angle)),
-            Formula::Product(factors) => match factors.as_slice() {
+            Formula::Product(factors) => match &factors[..] {
                 [Formula::Rational(scale), inner] => inner.add_turns(&(scale * factor), angle),
                 _ => false,
             },
@@ -270,7 +275,7 @@ impl Element for Formula {
             (Formula::Rational(a), Formula::Rational(b)) => Formula::Rational(a + b),
             (zero, other) if zero.is_zero() => other.clone(),
             (other, zero) if zero.is_zero() => other.clone(),
-            (a, b) => Formula::Sum([a.terms(), b.terms()].concat()),
+            (a, b) => Formula::Sum([a.terms(), b.terms()].concat().into()),
         }
     }
     fn minus(&self, other: &Self) -> Self {

@@ -3,7 +3,7 @@
 use std::fmt;
 
 use crate::element::Element;
-use crate::formula::Formula;
+use crate::formula::{Formula, MOST_BITS};
 
 /// The constant of modules that have the acceleration of free fall as an argument.
 pub const NOMINAL_GRAVITY: &str = "NOMINAL_GRAVITY";
@@ -195,8 +195,6 @@ pub fn by_addition<E: Element>((sine, cosine): (E, E), turn: &Turn<'_, E>) -> (E
     (sine.times(c).plus(&cosine.times(&s)), cosine.times(c).minus(&sine.times(&s)))
 }
 
-/// Maximum number of bits of an exact value.
-const MOST_BITS: usize = 1 << 20;
 /// Cost limit for the exact values of a function, in products of words: squares of lengths, the cost of common divisors of fractions.
 const MOST_WORK: u64 = 1 << 32;
 /// The same for entries of a known length. In addition, a number of steps with values of four times that length, and a number per entry, are

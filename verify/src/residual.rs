@@ -62,7 +62,7 @@ impl Equations {
         let program = |name: &str| {
             let name = format!("{name}{suffix}");
             let program = module.program(&name)?.clone();
-            let values = claims.resolve(&name, &program.literals, module.real).values;
+            let values = claims.resolve(&name, &program.literals, module.real).values.clone();
             let literals: Option<Vec<Wide>> = program.exact_literals(&values).iter().map(Wide::from_formula).collect();
             Some((program, literals?))
         };

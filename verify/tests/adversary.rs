@@ -37,7 +37,7 @@ impl Given {
         document_bounds(&source, &mut generated).expect("bounds");
         let report = certify(&source, &generated);
         assert!(report.passed(), "{report}");
-        let claims = Claims::from_numbers(&generated.constants);
+        let claims = Claims::from_numbers(&generated.constants).expect("short formulas");
         Given { source, module: generated.module, claims, certificate: Certificate::of(&report) }
     }
 
@@ -637,7 +637,7 @@ fn each_entry_has_digits_of_its_own() {
     let single = {
         let source = common::source("scara");
         let generated = common::generate(&source, Scalar::F32);
-        let claims = Claims::from_numbers(&generated.constants);
+        let claims = Claims::from_numbers(&generated.constants).expect("short formulas");
         let certificate = scara.certificate.clone();
         Given { source, module: generated.module, claims, certificate }
     };

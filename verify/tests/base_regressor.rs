@@ -35,7 +35,7 @@ fn subject(name: &str) -> Subject {
     let generated = common::generate(&source, Scalar::F64);
     let module = Module::read(&generated.module).expect("a module");
     let (manipulator, _) = validate::read(&source).0.expect("a valid description");
-    let claims = Claims::from_numbers(&generated.constants);
+    let claims = Claims::from_numbers(&generated.constants).expect("short formulas");
     let own = constants::base_parameters(&manipulator, &claims, &module).expect("base parameters");
     let program = module.program("base_regressor").expect("the function").clone();
     let steps: Vec<usize> = program.outputs.iter().map(|output| output.step).collect();

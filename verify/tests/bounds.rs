@@ -35,7 +35,7 @@ fn robot_with(name: &str, options: &Options) -> (String, Module, Claims, Manipul
     let generated = common::generate_with(&source, options);
     let module = Module::read(&generated.module).expect("a module");
     let (manipulator, _) = validate::read_for(&source, scalar).0.expect("a valid description");
-    (generated.module, module, Claims::from_numbers(&generated.constants), manipulator)
+    (generated.module, module, Claims::from_numbers(&generated.constants).expect("short formulas"), manipulator)
 }
 
 fn measure(manipulator: &Manipulator, module: &Module, subjects: Vec<Subject>, batches: u64, seed: u64) -> Vec<Seen> {
@@ -89,7 +89,7 @@ fn a_fused_operation_rounds_once() {
         let (_, module, claims, manipulator) = robot_with("panda7", &Options { fuse, ..Options::default() });
         let domain = domain_of(&manipulator, &module);
         let program = module.program("inverse_dynamics").expect("a function");
-        let values = claims.resolve("inverse_dynamics", &program.literals, module.real).values;
+        let values = claims.resolve("inverse_dynamics", &program.literals, module.real).values.clone();
         let table = Table::of(program, &literal_errors(program, &values, module.real), module.real).expect("a table");
         let at_a_state = table.run(&draw(&domain, &mut Stream::new(5), module.real)).into_iter().map(|(_, bound)| bound);
         [of_function(program, &values, &domain, &module, &claims).largest(), at_a_state.fold(0.0, f64::max)]
@@ -172,7 +172,7 @@ fn the_companion_returns_the_same_bounds() {
             let list: Vec<String> =
                 program.arguments.iter().map(|&a| format!("&{:?}", arguments.of(a)).replace("&[]", "&[0.0; 0]")).collect();
             calls += &format!("    show(&format!(\"{{:?}}\", robot_bounds::{function}_error_bound({})));\n", list.join(", "));
-            let values = claims.resolve(function, &program.literals, module.real).values;
+            let values = claims.resolve(function, &program.literals, module.real).values.clone();
             let table = Table::of(program, &literal_errors(program, &values, module.real), module.real).expect("a table");
             expected.extend(table.run(&arguments).into_iter().map(|(_, bound)| bound));
         }
@@ -275,7 +275,7 @@ fn lanes_return_the_bounds_of_the_companion() {
         let side = LaneArguments::new(&states, module.real);
         for (function, read) in &module.functions {
             let program = &read.as_ref().expect("a function").program;
-            let values = claims.resolve(function, &program.literals, module.real).values;
+            let values = claims.resolve(function, &program.literals, module.real).values.clone();
             let table = Table::of(program, &literal_errors(program, &values, module.real), module.real).expect("a table");
             let mut lanes = table.lanes();
             lanes.run(&side);
@@ -326,7 +326,7 @@ fn another_form_of_the_solution_has_no_bound_of_torques() {
     let (_, module, claims, manipulator) = robot("panda7", Scalar::F64);
     let domain = domain_of(&manipulator, &module);
     let program = module.program("forward_dynamics").expect("the function");
-    let values = claims.resolve("forward_dynamics", &program.literals, module.real).values;
+    let values = claims.resolve("forward_dynamics", &program.literals, module.real).values.clone();
     assert!(of_function(program, &values, &domain, &module, &claims).residual.is_some());
     let mut other = program.clone();
     let divide = |step: &Step| matches!(step, Step::Divide(..));

@@ -283,7 +283,7 @@ fn arms_whose_equations_are_faulty_have_no_module() {
         let generated = generated.unwrap_or_else(|| panic!("{}", diagnostics.render(&beside, Colour::Never)));
         let faulty = Source::new("robot.yaml", text);
         assert!(armgen_codegen::generate(&faulty, &Options::default()).0.is_none(), "{text}");
-        let claims = Claims::from_numbers(&generated.constants);
+        let claims = Claims::from_numbers(&generated.constants).expect("short formulas");
         let report = verify_with(&faulty, &generated.module, claims, Effort::default());
         println!("{:?}", report.first_fault());
         assert!(!report.passed(), "{text}");

@@ -31,7 +31,7 @@ fn replaced(text: &str, old: &str, new: &str) -> String {
 fn what_has_no_influence_gives_no_other_points() {
     let source = common::source("scara");
     let generated = common::generate(&source, Scalar::F64);
-    let (text, claims) = (&generated.module, Claims::from_numbers(&generated.constants));
+    let (text, claims) = (&generated.module, Claims::from_numbers(&generated.constants).expect("short formulas"));
     let points = bits(&source, text, &claims);
     let same = |what: &str, source: &Source, text: &str, claims: &Claims| {
         assert_eq!(bits(source, text, claims), points, "{what}");
@@ -69,7 +69,7 @@ fn what_has_no_influence_gives_no_other_points() {
 fn what_has_influence_gives_other_points() {
     let source = common::source("scara");
     let generated = common::generate(&source, Scalar::F64);
-    let (text, claims) = (&generated.module, Claims::from_numbers(&generated.constants));
+    let (text, claims) = (&generated.module, Claims::from_numbers(&generated.constants).expect("short formulas"));
     let points = bits(&source, text, &claims);
     for (old, new) in [("5.0 * c2", "5.5 * c2"), ("5.0 * c2 + 8.766", "5.0 * c2 - 8.766"), ("sin_cos(q[1])", "sin_cos(q[0])")] {
         assert_ne!(bits(&source, &replaced(text, old, new), &claims), points, "{new}");
@@ -110,7 +110,7 @@ fn roots_of_roots_have_their_real_signs() {
     let wrong = if wrong == generated.module { generated.module.replace("c2", "(-(0.5 + 0.5) * c2)") } else { wrong };
     assert_ne!(wrong, generated.module);
     for seed in 0..40 {
-        let claims = Claims::from_numbers(&generated.constants);
+        let claims = Claims::from_numbers(&generated.constants).expect("short formulas");
         let report = verify_with(&source, &wrong, claims, Effort { points: 1, seed, ..Effort::default() });
         let fault = report.first_fault().unwrap_or_default();
         assert!(fault.contains("differs from the equations"), "run {seed}: {fault}");

@@ -3,6 +3,7 @@
 use crate::common;
 
 use armgen_certify::{certify, verify};
+use armgen_codegen::exact::Number;
 use armgen_codegen::kinds::Scalar;
 use armgen_codegen::program::Trig;
 use armgen_codegen::schedule::Options;
@@ -10,7 +11,9 @@ use armgen_codegen::source::Source;
 use armgen_verify::certificate::Certificate;
 use armgen_verify::checker::Effort;
 use armgen_verify::claims::Claims;
+use armgen_verify::formula::Rational;
 use armgen_verify::verify_with;
+use dashu_int::UBig;
 
 /// Prints each report with `--nocapture`.
 fn check(options: &Options) {
@@ -168,6 +171,21 @@ fn a_nested_root_that_the_description_does_not_have_is_refused() {
     assert_eq!(verdict("sqrt(5)*sqrt(5)"), None);
     let fault = verdict("5/2*sqrt(4 + pi - pi)").expect("not verified");
     assert!(fault.contains("which the description does not have"), "{fault}");
+}
+
+/// Without the exact values of its literals no function can be compared: the report names the constant, and not a function that differs.
+#[test]
+fn a_constant_that_the_checker_cannot_read_is_named() {
+    let source = common::source("single_joint");
+    let mut generated = common::generate(&source, Scalar::F64);
+    assert!(certify(&source, &generated).passed());
+    let long = Number::from(Rational::from(UBig::from(10u8).pow(300_000)));
+    generated.constants.entry("gravity".into()).or_default().push(long);
+    let report = certify(&source, &generated);
+    assert!(!report.passed());
+    let fault = report.first_fault().expect("not verified");
+    assert!(fault.starts_with("the constants of the generator: `gravity`: a formula of 300001 characters"), "{fault}");
+    assert!(report.functions.is_empty());
 }
 
 /// A description with nested roots, independent or not. The generator's field does not know their relations, and does not fold what would

@@ -54,7 +54,7 @@ fn given(robot: &str, options: &Options) -> Given {
     document_bounds(&source, &mut generated).expect("bounds");
     let report = certify(&source, &generated);
     assert!(report.passed(), "{report}");
-    let claims = Claims::from_numbers(&generated.constants);
+    let claims = Claims::from_numbers(&generated.constants).expect("short formulas");
     Given { source, module: generated.module, claims, certificate: Certificate::of(&report) }
 }
 

@@ -15,7 +15,7 @@ use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
 use dashu_base::BitTest;
 
-use super::{Formula, Root};
+use super::{root_of_rational, Formula, Rational, Root};
 use crate::check::Check;
 use crate::interval::Interval;
 
@@ -32,7 +32,7 @@ const DEEPEST: usize = 8000;
 pub struct Definition {
     index: usize,
     formula: Formula,
-    /// Approximate number of bits of its value, before and after the point.
+    /// Number of bits of its value before the point.
     size: usize,
     /// Nesting depth.
     depth: usize,
@@ -117,11 +117,13 @@ pub struct Definitions {
     left: Cell<u64>,
     /// Cache of parsed texts, because most constants occur many times.
     read: RefCell<BTreeMap<String, Formula>>,
+    /// Roots of fractions: each takes a trial division, and an arm has few.
+    roots: RefCell<BTreeMap<Rational, Formula>>,
 }
 
 impl Default for Definitions {
     fn default() -> Definitions {
-        Definitions { list: BTreeMap::new(), left: Cell::new(MOST_WORK), read: RefCell::default() }
+        Definitions { list: BTreeMap::new(), left: Cell::new(MOST_WORK), read: RefCell::default(), roots: RefCell::default() }
     }
 }
 
@@ -135,6 +137,17 @@ impl Definitions {
         let formula = Formula::parse_with(text, self)?;
         self.read.borrow_mut().insert(text.into(), formula.clone());
         Ok(formula)
+    }
+
+    /// The square root of a fraction; a known one costs nothing, another `work`.
+    pub(super) fn root(&self, value: &Rational, work: u64) -> Result<Formula, String> {
+        if let Some(known) = self.roots.borrow().get(value) {
+            return Ok(known.clone());
+        }
+        self.charge(work)?;
+        let root = root_of_rational(value)?;
+        self.roots.borrow_mut().insert(value.clone(), root.clone());
+        Ok(root)
     }
 
     /// The spent fraction of the budget.
@@ -153,15 +166,20 @@ impl Definitions {
         Ok(())
     }
 
-    /// Parses the definition with this number.
-    pub fn define(&mut self, index: usize, text: &str) -> Result<(), String> {
+    /// Parses the definition with this number. `bits` measures the bits of a value before the point, `None` if it is undefined.
+    pub fn define(&mut self, index: usize, text: &str, bits: impl Fn(&Formula) -> Option<usize>) -> Result<(), String> {
         let formula = Formula::parse_with(text, self)?;
-        let (size, depth) = (size(&formula), depth(&formula));
-        if size > LARGEST || depth > DEEPEST {
+        let (most, depth) = (size(&formula), depth(&formula));
+        if most > LARGEST || depth > DEEPEST {
             return Err(format!(
-                "`{PREFIX}{index}` is too large to be a constant of a robot: {size} bits, {depth} formulas deep"
+                "`{PREFIX}{index}` is too large to be a constant of a robot: {most} bits, {depth} formulas deep"
             ));
         }
+        // The value itself, not the sum over its factors: a pivot of a matrix is a quotient of long products, and the estimate of such
+        // a quotient doubles with each row.
+        let Some(size) = bits(&formula) else {
+            return Err(format!("`{PREFIX}{index}` divides by zero, or has the root of a negative number"));
+        };
         let (hash, refers) = (crate::hash(&spelled(&formula)), references_of(&formula));
         let definition = Definition { index, formula, size, depth, hash, refers, enclosures: Mutex::default() };
         match self.list.insert(index, Arc::new(definition)) {
@@ -176,7 +194,7 @@ impl Definitions {
     }
 }
 
-/// Approximate number of bits of a formula's value, before and after the point.
+/// Upper bound, nearly, on the number of bits of a formula's value before the point; for a fraction, the bits of its numerator and denominator.
 pub(super) fn size(formula: &Formula) -> usize {
     match formula {
         Formula::Rational(value) => value.numerator().bit_len() + value.denominator().bit_len(),
@@ -305,14 +323,15 @@ impl<E: Clone> Defined<E> {
 mod tests {
     use super::*;
     use crate::arithmetic::prime::Prime;
+    use crate::arithmetic::tower::Tower;
     use crate::arithmetic::Arithmetic;
-    use crate::enclosure::Float;
+    use crate::enclosure::{bits_before_the_point, Float};
     use crate::formula::{Atoms, Dependent};
     use crate::stream::Stream;
 
     fn list(texts: &[&str]) -> Result<Definitions, String> {
         let mut definitions = Definitions::default();
-        texts.iter().enumerate().try_for_each(|(index, text)| definitions.define(index, text))?;
+        texts.iter().enumerate().try_for_each(|(index, text)| definitions.define(index, text, bits_before_the_point))?;
         Ok(definitions)
     }
 
@@ -346,8 +365,9 @@ mod tests {
     }
 
     #[test]
-    fn names_are_defined_once_and_before_they_are_used() {
+    fn names_are_defined_once_with_a_value_and_before_they_are_used() {
         for (wrong, why) in [
+            (&["pi - pi", "1/k0"][..], "divides by zero"),
             (&["k0"][..], "not defined"),
             (&["1", "k2"], "not defined"),
             (&["k"], "not defined"),
@@ -356,7 +376,7 @@ mod tests {
             assert!(list(wrong).is_err_and(|error| error.contains(why)), "{wrong:?}");
         }
         let mut twice = list(&["pi"]).expect("a definition");
-        assert!(twice.define(0, "pi").is_err());
+        assert!(twice.define(0, "pi", bits_before_the_point).is_err());
         assert!(Formula::parse("k0").is_err());
     }
 
@@ -364,18 +384,61 @@ mod tests {
     fn graphs_of_no_robot_are_refused() {
         // First, each is the square of the previous; then a chain too deep for recursion.
         let mut definitions = list(&["sqrt(2) + 1"]).expect("a definition");
-        let wrong = (1..100).find_map(|n| definitions.define(n, &format!("k{0}*k{0}", n - 1)).err()).expect("an end");
+        let wrong = (1..100)
+            .find_map(|n| definitions.define(n, &format!("k{0}*k{0}", n - 1), bits_before_the_point).err())
+            .expect("an end");
         assert!(wrong.contains("too large"), "{wrong}");
         let mut definitions = list(&["pi"]).expect("a definition");
-        let wrong = (1..100_000).find_map(|n| definitions.define(n, &format!("k{} + 1", n - 1)).err()).expect("an end");
+        let wrong = (1..100_000)
+            .find_map(|n| definitions.define(n, &format!("k{} + 1", n - 1), bits_before_the_point).err())
+            .expect("an end");
         assert!(wrong.contains("deep"), "{wrong}");
+    }
+
+    /// Pivots of a matrix without zeros, each a quotient of what the ones before leave: as long as a constant, though their formulas, multiplied out,
+    /// would double with each row.
+    #[test]
+    fn pivots_of_a_matrix_are_short() {
+        const ROWS: usize = 16;
+        let mut definitions = Definitions::default();
+        let mut count = 0;
+        let name = &mut |text: String| {
+            definitions.define(count, &text, bits_before_the_point).unwrap_or_else(|error| panic!("{text}: {error}"));
+            count += 1;
+            format!("k{}", count - 1)
+        };
+        let entry = |i: usize, j: usize| if i == j { "40 + sin(3/10)".into() } else { format!("cos({}/10)", i + 2 * j) };
+        let mut rows: Vec<Vec<String>> = (0..ROWS).map(|i| (0..=i).map(|j| name(entry(i, j))).collect()).collect();
+        for k in 0..ROWS {
+            for i in k + 1..ROWS {
+                let factor = name(format!("{}/{}", rows[i][k], rows[k][k]));
+                for j in k + 1..=i {
+                    rows[i][j] = name(format!("{} - {factor}*{}", rows[i][j], rows[j][k]));
+                }
+            }
+        }
+        let last = Formula::parse_with(&rows[ROWS - 1][ROWS - 1], &definitions).expect("a formula");
+        assert!(size(&last) < 8, "{}", size(&last));
+        let value = Float::F64.nearest(&last).expect("a pivot");
+        assert!(value > 30.0 && value < 41.0, "{value}");
+    }
+
+    /// A square of a square is small before the point where the first number is, and yet long in fractions.
+    #[test]
+    fn fractions_of_no_robot_have_no_value() {
+        let mut definitions = list(&["1/2*sqrt(2)*cos(7/10)"]).expect("a definition");
+        (1..64).for_each(|n| definitions.define(n, &format!("k{0}*k{0}", n - 1), bits_before_the_point).expect("small"));
+        let [short, long] = ["k10", "k63"].map(|text| Formula::parse_with(text, &definitions).expect("a formula"));
+        let tower = Tower::new(&mut Stream::new(1), &Atoms::of([&long]), &Dependent::new(), 4).expect("a root");
+        assert!(tower.constant(&short).is_some());
+        assert!(tower.constant(&long).is_none());
     }
 
     #[test]
     fn long_chains_have_values_and_enclosures() {
         let mut definitions = list(&["cos(7/10)"]).expect("a definition");
         for n in 1..=2000 {
-            definitions.define(n, &format!("1/2*k{0} + 1/2*k{0}", n - 1)).expect("not too deep");
+            definitions.define(n, &format!("1/2*k{0} + 1/2*k{0}", n - 1), bits_before_the_point).expect("not too deep");
         }
         let last = Formula::parse_with("k2000", &definitions).expect("a formula");
         assert_eq!(Float::F64.nearest(&last), Float::F64.nearest(&Formula::parse("cos(7/10)").expect("a formula")));

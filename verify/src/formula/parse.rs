@@ -9,7 +9,7 @@ use dashu_base::{Abs, BitTest, Signed};
 use dashu_int::{IBig, UBig};
 
 use super::definitions::{self, Definitions};
-use super::{root_of_rational, Formula, Rational, Root};
+use super::{Formula, Rational, Root};
 use crate::check::Check;
 use crate::element::Element;
 
@@ -144,7 +144,7 @@ impl Parser<'_> {
         // Fractions and radicands are multiplied.
         let mut all = 0;
         for factor in &factors {
-            let parts = if let Formula::Product(parts) = factor { parts.as_slice() } else { std::slice::from_ref(factor) };
+            let parts = if let Formula::Product(parts) = factor { &parts[..] } else { std::slice::from_ref(factor) };
             for part in parts {
                 all += match part {
                     Formula::Rational(value) => words(value),
@@ -217,13 +217,12 @@ impl Parser<'_> {
         self.expect('(')?;
         let inner = self.sum()?;
         self.expect(')')?;
-        self.definitions.charge(match (word, &inner) {
+        if let ("sqrt", Formula::Rational(value)) = (word, &inner) {
             // Numerator and denominator are multiplied.
-            ("sqrt", Formula::Rational(value)) => words(value).saturating_mul(WORK_OF_ROOT),
-            _ => WORK_OF_WAVE,
-        })?;
+            return self.definitions.root(value, words(value).saturating_mul(WORK_OF_ROOT));
+        }
+        self.definitions.charge(WORK_OF_WAVE)?;
         Ok(match (word, inner) {
-            ("sqrt", Formula::Rational(value)) => root_of_rational(&value)?,
             ("sqrt", inner) => Formula::Root(Root::Nested(Box::new(inner))),
             ("sin", inner) => Formula::Sine(Box::new(inner)),
             ("atan", Formula::Rational(tangent)) if !tangent.is_negative() && tangent < Rational::ONE => {

@@ -134,7 +134,7 @@ pub(crate) fn check(name: &str, language: Language, fuse: bool, wanted: usize) {
     let source = common::source(name);
     let generated = common::generate_with(&source, &Options { trig: Trig::Fast, fuse, ..Options::default() });
     let text = generated.in_language(language);
-    let claims = Claims::from_numbers(&generated.constants);
+    let claims = Claims::from_numbers(&generated.constants).expect("short formulas");
     let effort = Effort { points: 2, exact_points: 0, seed: 7 };
     let (manipulator, _) = validate::read_for(&source, Scalar::F64).0.expect("a valid description");
     let whole = ModuleText { language, text: &text };
