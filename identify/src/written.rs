@@ -330,7 +330,8 @@ fn friction<'d>(
             old: arm.joints[i].friction[term as usize],
             new,
             remark,
-            power: power_of_sigma(new / unit, sigma / unit),
+            // A term that vanishes must not be rounded to the digits of 0.
+            power: power_of_sigma(new.abs().max(arm.joints[i].friction[term as usize].unwrap_or(0.0).abs()) / unit, sigma / unit),
             unit,
         });
     }

@@ -160,7 +160,7 @@ fn odd(seed: u64) -> (String, bool) {
         if whole || style.chance(0.7) {
             let mut elements = Vec::new();
             for (name, x) in [("xx", 0.02), ("xy", 0.001), ("yy", 0.05), ("xz", 0.002), ("yz", -0.001), ("zz", 0.045)] {
-                if whole || style.chance(0.7) {
+                if whole || !name.starts_with(['x', 'y']) || name.ends_with(&name[..1]) || style.chance(0.7) {
                     elements.push((name, style.number(x)));
                 }
             }
@@ -367,8 +367,10 @@ fn a_written_file_has_possible_bodies_and_the_torques_of_the_arm() {
     let error: f64 = tau.iter().zip(&right).map(|(a, b)| (a - b).powi(2)).sum();
     let size: f64 = right.iter().map(|tau| tau * tau).sum();
     assert!((error / size).sqrt() < 4e-3, "{}", (error / size).sqrt());
-    // Two descriptions of one arm: what no motion shows is that of the guess.
-    assert!((again.links[0].own[0] - arm.links[0].own[0]).abs() < 1e-6 * arm.links[0].own[0]);
+    // Masses that no motion shows stay near the guess: without D they run away.
+    for (again, guess) in again.links.iter().zip(&arm.links) {
+        assert!((0.5..2.0).contains(&(again.own[0] / guess.own[0])), "{} {}", again.own[0], guess.own[0]);
+    }
 }
 
 /// A body without extent, or with a moment that is too large, has no positive pivots and is refused.
