@@ -14,6 +14,7 @@
 //! Storage is the caller's. The page `docs/timing.md` explains the method.
 
 mod fault;
+mod governor;
 mod grid;
 mod inner;
 mod law;
@@ -29,6 +30,7 @@ mod solve;
 mod timed;
 
 pub use fault::{TimingError, TimingFault};
+pub use governor::{Command, Governed, Governor, Phase};
 pub use limits::Limits;
 pub use model::{JointFriction, LinkBound, PathDynamics, PathModel, PathTorques};
 pub use path::{JointPath, PathError, PathFault, PathPoint, Piece};

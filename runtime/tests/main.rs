@@ -5,6 +5,7 @@ mod bits;
 mod clik;
 mod common;
 mod examples;
+mod governor;
 mod joint_control;
 mod manipulability;
 mod model;

@@ -10,7 +10,7 @@ use nalgebra::{DMatrix, DVector, SVector};
 use std::time::Duration;
 
 /// Random numbers in [0, 1) (Knuth's linear congruences).
-fn random(seed: u64) -> impl FnMut() -> f64 {
+pub(crate) fn random(seed: u64) -> impl FnMut() -> f64 {
     let mut state = seed.wrapping_mul(0x9e37_79b9_7f4a_7c15) | 1;
     move || {
         state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
@@ -55,13 +55,16 @@ fn spline<const N: usize>(points: &[SVector<f64, N>]) -> Vec<Piece<f64, N>> {
 }
 
 /// Three to seven points, anywhere within `range` of zero.
-fn random_path<const N: usize>(next: &mut impl FnMut() -> f64, range: [f64; N]) -> JointPath<f64, N, Vec<Piece<f64, N>>> {
+pub(crate) fn random_path<const N: usize>(
+    next: &mut impl FnMut() -> f64,
+    range: [f64; N],
+) -> JointPath<f64, N, Vec<Piece<f64, N>>> {
     let count = 3 + (next() * 5.0) as usize;
     let points: Vec<SVector<f64, N>> = (0..count).map(|_| SVector::from_fn(|j, _| range[j] * (2.0 * next() - 1.0))).collect();
     JointPath::new(spline(&points)).expect("a path")
 }
 
-fn with_timing<R: PathDynamics<N, Real = f64>, const N: usize, A>(
+pub(crate) fn with_timing<R: PathDynamics<N, Real = f64>, const N: usize, A>(
     robot: &R,
     path: &JointPath<f64, N, Vec<Piece<f64, N>>>,
     limits: &Limits<f64, N>,
@@ -88,6 +91,8 @@ fn worst<const N: usize>(
     for i in 0..timing.segments() {
         let p = timing.profile(i).expect("a segment");
         let middle = 0.5 * (p.x[0] + p.x[1]) + p.k;
+        let ([low, high], slack) = (p.interval, 1e-9 * p.bound);
+        assert!((low - slack..=high + slack).contains(&p.x[0]), "segment {i}: {} outside of {low} to {high}", p.x[0]);
         for place in 0..=places {
             let t = place as f64 / places as f64;
             // Inside: at the ends the sign of a rate may be that of the neighbour.

@@ -117,7 +117,7 @@ impl<T: RealField + Copy, const N: usize> Active<T, N> {
         }
         for k in 0..N {
             if k == count {
-                for i in 0..=k {
+                for i in 0..k + 1 {
                     self.r[(i, k)] = d[i];
                 }
                 self.rows[k] = row;
@@ -127,34 +127,48 @@ impl<T: RealField + Copy, const N: usize> Active<T, N> {
         self.count += 1;
     }
 
+    /// An element of R, zero outside of it: the optimiser does not see that all places of [`Active::remove`] are within.
+    fn of_r(&self, i: usize, k: usize) -> T {
+        self.r.get((i, k)).copied().unwrap_or_else(T::zero)
+    }
+
+    fn set_r(&mut self, i: usize, k: usize, value: T) {
+        if let Some(element) = self.r.get_mut((i, k)) {
+            *element = value;
+        }
+    }
+
     /// Removes the active row of number `out`: its column of R goes, and rotations make the others triangular again.
     fn remove(&mut self, out: usize) {
         self.count = self.count.saturating_sub(1);
         for k in 0..N {
-            if k >= out && k + 1 < N {
+            let next = (self.rows.get(k + 1).copied(), self.multipliers.get(k + 1).copied());
+            if let (true, (Some(row), Some(multiplier))) = (k >= out, next) {
                 for i in 0..N {
-                    self.r[(i, k)] = self.r[(i, k + 1)];
+                    self.set_r(i, k, self.of_r(i, k + 1));
                 }
-                self.rows[k] = self.rows[k + 1];
-                self.multipliers[k] = self.multipliers[k + 1];
+                self.rows[k] = row;
+                self.multipliers[k] = multiplier;
             }
         }
         for k in 0..N {
             if k >= out && k < self.count && k + 1 < N {
-                let (c, s, norm) = rotation(self.r[(k, k)], self.r[(k + 1, k)]);
-                self.r[(k, k)] = norm;
-                self.r[(k + 1, k)] = T::zero();
+                let (c, s, norm) = rotation(self.of_r(k, k), self.of_r(k + 1, k));
+                self.set_r(k, k, norm);
+                self.set_r(k + 1, k, T::zero());
                 for m in k + 1..N {
-                    let (a, b) = (self.r[(k, m)], self.r[(k + 1, m)]);
-                    self.r[(k, m)] = c * a + s * b;
-                    self.r[(k + 1, m)] = c * b - s * a;
+                    let (a, b) = (self.of_r(k, m), self.of_r(k + 1, m));
+                    self.set_r(k, m, c * a + s * b);
+                    self.set_r(k + 1, m, c * b - s * a);
                 }
                 self.rotate(k, c, s);
             }
         }
         for k in 0..N {
             if k >= self.count {
-                self.r.column_mut(k).fill(T::zero());
+                for i in 0..N {
+                    self.set_r(i, k, T::zero());
+                }
                 self.multipliers[k] = T::zero();
             }
         }

@@ -25,6 +25,8 @@ struct HalfPlane<T> {
 pub(super) struct HalfPlanes<T, const N: usize> {
     /// Of each joint: torque, acceleration, both sides, and speed. `None` where a limit is infinite or cannot bind.
     rows: [[Option<[HalfPlane<T>; 5]>; 5]; N],
+    /// X0 lies between these.
+    x0: [T; 2],
     /// Of the middle coefficient, of u and of the next interval.
     others: [HalfPlane<T>; 8],
 }
@@ -87,7 +89,7 @@ impl<T: RealField + Copy, const N: usize> HalfPlanes<T, N> {
             plane(-g, g, assumed.u + k / h),
             plane(g, -g, assumed.u - k / h),
         ];
-        Self { rows, others }
+        Self { rows, x0: assumed.x, others }
     }
 
     /// The interval of X2 for an X0: (lowest, its slope by X0), (highest, its slope), and the X0 that the planes without X2 allow.
@@ -168,6 +170,16 @@ impl<T: RealField + Copy, const N: usize> HalfPlanes<T, N> {
             low = (low - width / slope) * (T::one() + tiny);
         }
         Some([top, top])
+    }
+
+    /// The X2 that keep all planes from an X0, within rounding; `None` where there is no such X2.
+    pub(super) fn interval_from(&self, x0: T) -> Option<[T; 2]> {
+        let at = self.interval(x0);
+        let slack = lit::<T>(256.0) * T::default_epsilon();
+        let [least, most] = self.x0;
+        let is_inside = x0 >= least.max(at.alone[0]) - most * slack && x0 <= most.min(at.alone[1]) + most * slack;
+        let high = at.high.0.max(T::zero());
+        (is_inside && at.width() >= -slack * at.size()).then(|| [at.low.0.min(high), high])
     }
 
     /// The largest X2 from an X0.

@@ -51,27 +51,30 @@ pub(super) fn node_bound<T: RealField + Copy, const N: usize>(
     let empty = AtNode { m: T::zero(), c: T::zero(), v: T::zero(), rest: huge(), m_error: T::zero() };
     let mut rows = [[[empty; 4]; N]; 2];
     let mut viscous = false;
-    for (side, (segment, end)) in [(left, 2), (right, 0)].into_iter().enumerate() {
+    for (side, (segment, at_end)) in rows.iter_mut().zip([(left, true), (right, false)]) {
         let Some(segment) = segment else { continue };
+        let here = |[start, _, end]: [T; 3]| if at_end { end } else { start };
         for index in 0..Segment::<T, N>::ROWS {
             let Some(row) = segment.row(index, limits, friction, true) else { continue };
             let slack = row.bound.abs() * lit(ROUNDING);
             if index >= Segment::<T, N>::SLOPED {
-                let c = row.c[end] - row.c_error;
+                let c = here(row.c) - row.c_error;
                 if c > T::zero() {
                     x = x.min((row.bound + slack) / c);
                 }
                 continue;
             }
             let at = AtNode {
-                m: row.m[end],
-                c: row.c[end] - row.c_error,
-                v: row.v[end],
-                rest: row.bound + slack + row.d_error - row.d[end],
+                m: here(row.m),
+                c: here(row.c) - row.c_error,
+                v: here(row.v),
+                rest: row.bound + slack + row.d_error - here(row.d),
                 m_error: row.m_error,
             };
             viscous |= at.v != T::zero();
-            rows[side][index / 4][index % 4] = at;
+            if let Some(of) = side.get_mut(index / 4) {
+                of[index % 4] = at;
+            }
         }
     }
     // A first solution tells how large u is, and so how much the errors of m count.

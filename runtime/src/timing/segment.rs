@@ -10,6 +10,7 @@
 //! where p''' is bounded by its Bernstein coefficients and M_9 by majorants (`majorant.rs`). Halves of a segment use the same p, so they
 //! need no dynamics, and the first term falls by eight.
 
+use super::inner::Assumed;
 use super::law::Law;
 use super::limits::Limits;
 use super::majorant::{Bounds, NINE};
@@ -104,8 +105,10 @@ pub(super) struct Inner<T> {
     pub interval: [T; 2],
     /// The law; before it is known, the estimate of the last grid.
     pub law: Law<T>,
-    /// Between these lies x on the segment, so that chords of sqrt(x) hold.
-    pub range: [T; 2],
+    /// The interval of a pass that may fail.
+    pub trial: [T; 2],
+    /// What the rows assume that prove the law.
+    pub assumed: Assumed<T>,
 }
 
 impl<T: RealField + Copy, const N: usize> Segment<T, N> {
@@ -125,10 +128,39 @@ impl<T: RealField + Copy, const N: usize> Segment<T, N> {
             rates: [[column; N]; 3],
             signs: [zero; N],
             bound: Bound { node: zero, forward: zero, backward: zero, barriers: [None; 3] },
-            inner: Inner { interval: [zero; 2], law, range: [zero; 2] },
+            inner: Inner { interval: [zero; 2], law, trial: [zero; 2], assumed: Assumed { x: [zero; 2], touch: zero, u: zero } },
             time: zero,
             split: false,
         }
+    }
+
+    /// The part from the fraction `from` to the end (de Casteljau).
+    pub(super) fn part(&self, from: T) -> Self {
+        let rest = T::one() - from;
+        let part = |[a, b, c]: Quadratic<T>| {
+            let (left, right) = (a * rest + b * from, b * rest + c * from);
+            [left * rest + right * from, right, c]
+        };
+        let columns = |all: [[Column<T>; N]; 3]| all.map(|of| of.map(|c| Column { quadratic: part(c.quadratic), ..c }));
+        Self {
+            start: self.start + self.length * from,
+            length: self.length * rest,
+            torques: columns(self.torques),
+            rates: columns(self.rates),
+            ..*self
+        }
+    }
+
+    /// The first joint that no torque within its limits holds at rest at an end of the segment, with the torque and the limit.
+    pub(super) fn unheld(&self, at_end: bool, limits: &Limits<T, N>, friction: &[JointFriction<T>; N]) -> Option<(usize, T, T)> {
+        let gravity = self.torques[2].map(|column| if at_end { column.quadratic[2] } else { column.quadratic[0] });
+        let joints = gravity.into_iter().zip(friction).zip(limits.effort).enumerate();
+        let mut sides = joints.flat_map(|(joint, ((gravity, of), [low, high]))| {
+            let torque = gravity + of.offset;
+            let dry = of.coulomb + of.load * gravity.abs();
+            [(joint, torque, high + dry), (joint, -torque, -low + dry)]
+        });
+        sides.find(|(_, torque, limit)| torque > limit)
     }
 
     /// Where the segment ends, in s.

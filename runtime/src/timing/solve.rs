@@ -60,6 +60,12 @@ enum Assume<T> {
     Share(T),
 }
 
+/// The segment that begins at node `i`, or the last one and `true` at the end of the path.
+fn beside<T, const N: usize>(segments: &[Segment<T, N>], i: usize) -> Option<(&Segment<T, N>, bool)> {
+    let (_, segments) = segments.split_last()?;
+    segments.get(i).map(|segment| (segment, false)).or(segments.last().map(|segment| (segment, true)))
+}
+
 /// Where the inner solution fails.
 struct Stuck {
     segment: usize,
@@ -156,18 +162,9 @@ impl<T: RealField + Copy, const N: usize> Solver<'_, T, N> {
         if self.ends.speed[1] > T::zero() {
             return Ok(());
         }
-        for joint in 0..N {
-            let of = &self.friction[joint];
-            let gravity = last.torques[2][joint].quadratic[2];
-            let torque = gravity + of.offset;
-            let dry = of.coulomb + of.load * gravity.abs();
-            let [low, high] = self.limits.effort[joint];
-            for (torque, limit) in [(torque, high + dry), (-torque, -low + dry)] {
-                if torque > limit {
-                    let fault = TimingFault::EndNotHeld { joint, torque: number(torque), limit: number(limit) };
-                    return Err(TimingError { s: number(last.end()), piece: last.piece, fault });
-                }
-            }
+        if let Some((joint, torque, limit)) = last.unheld(true, self.limits, self.friction) {
+            let fault = TimingFault::EndNotHeld { joint, torque: number(torque), limit: number(limit) };
+            return Err(TimingError { s: number(last.end()), piece: last.piece, fault });
         }
         Ok(())
     }
@@ -180,31 +177,31 @@ impl<T: RealField + Copy, const N: usize> Solver<'_, T, N> {
             piece: segment.piece,
             fault,
         };
-        for i in 0..=count {
+        for i in 0..segments.len() {
             let (left, right) = (i.checked_sub(1).and_then(|i| segments.get(i)), segments.get(i).filter(|_| i < count));
             match outer::node_bound(left, right, self.limits, self.friction) {
                 NodeBound::AtMost(x) => segments[i].bound.node = x,
                 NodeBound::Nothing(index) => {
                     let (limit, joint) = limit(index, N);
-                    let (segment, end) = if i < count { (&segments[i], false) } else { (&segments[i - 1], true) };
+                    let Some((segment, end)) = right.map(|of| (of, false)).or(left.map(|of| (of, true))) else { continue };
                     return Err(at(segment, end, TimingFault::InfeasiblePoint { joint, limit }));
                 }
             }
         }
         let [start, end] = self.ends.speed.map(|v| v * v);
         for (given, i) in [(start, 0), (end, count)] {
-            let node = segments[i].bound.node;
+            let Some((segment, is_end)) = beside(segments, i) else { continue };
+            let node = segments.get(i).map_or(given, |of| of.bound.node);
             if given > node * lit(1.0 + 1e-9) {
-                let (segment, is_end) = if i < count { (&segments[i], false) } else { (&segments[i - 1], true) };
                 let (limit, joint) = self.binding_at_node(segment, if is_end { 2 } else { 0 }, given);
                 let (speed, needed) = (number(node.max(T::zero()).sqrt()), number(given.sqrt()));
                 return Err(at(segment, is_end, TimingFault::InfeasibleSpeed { joint, limit, speed, needed, proved: true }));
             }
         }
-        let mut x = segments[0].bound.node.min(start);
+        let mut x = segments.first().map_or(start, |first| first.bound.node.min(start));
         for i in 0..count {
-            let next = segments[i + 1].bound.node;
-            let segment = &mut segments[i];
+            let Some([segment, next, ..]) = segments.get_mut(i..) else { break };
+            let next = next.bound.node;
             segment.bound.forward = x;
             let barrier = outer::least(segment, self.limits, self.friction, x, false);
             segment.bound.barriers[0] = barrier;
@@ -222,18 +219,20 @@ impl<T: RealField + Copy, const N: usize> Solver<'_, T, N> {
             }
             x = next.min(reached);
         }
-        segments[count].bound.forward = x;
-        if end > x * lit(1.0 + 1e-9) {
-            let segment = &segments[count - 1];
+        if let Some(last) = segments.last_mut() {
+            last.bound.forward = x;
+        }
+        if let Some((segment, _)) = beside(segments, count).filter(|_| end > x * lit(1.0 + 1e-9)) {
             let (limit, joint) =
                 segment.bound.barriers[0].map_or_else(|| self.binding_at_node(segment, 2, end), |b| limit(b.row, N));
             let (speed, needed) = (number(x.sqrt()), number(end.sqrt()));
             return Err(at(segment, true, TimingFault::InfeasibleSpeed { joint, limit, speed, needed, proved: true }));
         }
-        x = segments[count].bound.node.min(end);
-        segments[count].bound.backward = x;
-        for i in (0..count).rev() {
-            let segment = &mut segments[i];
+        if let Some(last) = segments.last_mut() {
+            x = last.bound.node.min(end);
+            last.bound.backward = x;
+        }
+        for segment in segments.iter_mut().take(count).rev() {
             let barrier = outer::least(segment, self.limits, self.friction, x, true);
             segment.bound.barriers[1] = barrier.map(|b| super::segment::Barrier { law: reversed(&b.law), row: b.row });
             let reached = barrier.map_or(segment.bound.node, |b| b.law.x2);
@@ -250,8 +249,7 @@ impl<T: RealField + Copy, const N: usize> Solver<'_, T, N> {
             x = segment.bound.node.min(reached);
             segment.bound.backward = x;
         }
-        if start > x * lit(1.0 + 1e-9) {
-            let segment = &segments[0];
+        if let Some(segment) = segments.first().filter(|_| start > x * lit(1.0 + 1e-9)) {
             let (limit, joint) =
                 segment.bound.barriers[1].map_or_else(|| self.binding_at_node(segment, 0, start), |b| limit(b.row, N));
             let (speed, needed) = (number(x.sqrt()), number(start.sqrt()));
@@ -318,10 +316,10 @@ impl<T: RealField + Copy, const N: usize> Solver<'_, T, N> {
         let mut next = [end, end];
         let mut failed = None;
         for i in (0..count).rev() {
-            let bound = |i: usize| segments[i].bound.x();
-            let (here, after) = (bound(i), bound(i + 1));
-            let before = if i > 0 { bound(i - 1) } else { here };
-            let beyond = if i + 2 <= count { bound(i + 2) } else { after };
+            let bound = |i: usize| segments.get(i).map(|segment| segment.bound.x());
+            let (Some(here), Some(after)) = (bound(i), bound(i + 1)) else { continue };
+            let before = i.checked_sub(1).and_then(bound).unwrap_or(here);
+            let beyond = bound(i + 2).unwrap_or(after);
             let segment = &segments[i];
             let assumed = self.assumed(segment, after, assume);
             let mut ks = [Some(zero); 5];
@@ -347,9 +345,8 @@ impl<T: RealField + Copy, const N: usize> Solver<'_, T, N> {
             };
             next = interval;
             let segment = &mut segments[i];
-            segment.inner.interval = interval;
-            segment.inner.range = assumed.x;
-            // Until the pass forwards, the law keeps its place in `inner.law` of a pass that may have to be kept.
+            // A pass that fails leaves the law and the interval of the one before it.
+            segment.inner.trial = interval;
             segment.time = k;
         }
         let tolerance = T::one() + lit::<T>(1e-9);
@@ -361,13 +358,15 @@ impl<T: RealField + Copy, const N: usize> Solver<'_, T, N> {
         }
         let mut x = start.min(next[1]);
         for i in 0..count {
-            let after = segments[i + 1].bound.x();
-            let next = if i + 1 < count { segments[i + 1].inner.interval } else { [end, end] };
-            let segment = &mut segments[i];
+            let Some([segment, after, ..]) = segments.get_mut(i..) else { break };
+            let next = if i + 1 < count { after.inner.trial } else { [end, end] };
+            let after = after.bound.x();
             let assumed = self.assumed(segment, after, assume);
             let k = segment.time;
             let planes = HalfPlanes::new(segment, self.limits, self.friction, k, &assumed, next);
             let to = planes.forwards(x).min(next[1]).max(next[0]);
+            segment.inner.interval = segment.inner.trial;
+            segment.inner.assumed = assumed;
             segment.inner.law = Law { length: segment.length, x0: x, k, x2: to };
             x = to;
         }
@@ -418,11 +417,13 @@ impl<T: RealField + Copy, const N: usize> Solver<'_, T, N> {
     /// Marks the neighbours of the segment where no motion was found.
     fn mark_stuck(&self, segments: &mut [Segment<T, N>], stuck: &Stuck, room: usize) -> Result<(), TimingError> {
         let count = segments.len() - 1;
-        let total = segments[count - 1].end() - segments[0].start;
-        let at = &segments[stuck.segment];
+        let (Some(at), Some(first), Some((last, _))) = (segments.get(stuck.segment), segments.first(), beside(segments, count))
+        else {
+            return Ok(());
+        };
         let error = |fault| TimingError { s: number(at.start), piece: at.piece, fault };
         let range = stuck.segment.saturating_sub(2)..(stuck.segment + 4).min(count);
-        if at.length < total * lit(1e-7) {
+        if at.length < (last.end() - first.start) * lit(1e-7) {
             let (limit, joint) = at
                 .bound
                 .barriers

@@ -17,8 +17,8 @@ use nalgebra::{RealField, SVector};
 pub struct Timing<'a, T, const N: usize> {
     pieces: &'a [Piece<T, N>],
     segments: &'a [Segment<T, N>],
-    limits: Limits<T, N>,
-    friction: [JointFriction<T>; N],
+    pub(super) limits: Limits<T, N>,
+    pub(super) friction: [JointFriction<T>; N],
     duration: T,
     lower_bound: T,
 }
@@ -83,6 +83,10 @@ impl<'a, T: RealField + Copy, const N: usize> Timing<'a, T, N> {
     ) -> Self {
         let segments = segments.get(..count).unwrap_or(segments);
         Self { pieces, segments, limits: *limits, friction: *friction, duration, lower_bound }
+    }
+
+    pub(super) fn all(&self) -> &'a [Segment<T, N>] {
+        self.segments
     }
 
     /// How long the motion takes, rounded up to a nanosecond.
@@ -180,16 +184,15 @@ impl<'a, T: RealField + Copy, const N: usize> Timing<'a, T, N> {
     pub fn enclosure(&self, index: usize, t: T) -> Option<[PathTorques<T, N>; 2]> {
         let segment = self.segments.get(index)?;
         let r = T::one() - t;
-        let value = |part: usize| {
-            SVector::from_fn(|joint, _| {
-                let [a, b, c] = segment.torques[part][joint].quadratic;
-                a * r * r + b * lit::<T>(2.0) * r * t + c * t * t
-            })
+        let value = |[a, b, c]: [T; 3]| a * r * r + b * lit::<T>(2.0) * r * t + c * t * t;
+        let of = |[inertial, velocity, gravity]: [[T; N]; 3]| PathTorques {
+            inertial: inertial.into(),
+            velocity: velocity.into(),
+            gravity: gravity.into(),
         };
-        let error = |part: usize| SVector::from_fn(|joint, _| segment.torques[part][joint].error);
         Some([
-            PathTorques { inertial: value(0), velocity: value(1), gravity: value(2) },
-            PathTorques { inertial: error(0), velocity: error(1), gravity: error(2) },
+            of(segment.torques.map(|part| part.map(|column| value(column.quadratic)))),
+            of(segment.torques.map(|part| part.map(|column| column.error))),
         ])
     }
 

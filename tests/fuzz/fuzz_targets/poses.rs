@@ -11,11 +11,11 @@ mod solver {
 
     pub const DOF: usize = 6;
     pub const MAX_SOLUTIONS: usize = 16;
-    const PRISMATIC: [bool; DOF] = [false; DOF];
-    const LENGTH: Real = 1.0;
+    pub const PRISMATIC: [bool; DOF] = [false; DOF];
+    pub const LENGTH: Real = 1.0;
     pub const POSITION_LIMITS: [[Real; 2]; DOF] = [[-3.0, 4.0]; DOF];
 
-    include!("../../../inverse-kinematics/src/blocks/solutions.rs");
+    pub type Solutions = Postures<DOF, MAX_SOLUTIONS>;
 
     /// With as many joints as the module has, the last ones at 0.
     fn padded<const J: usize>(found: &Branches<J, 8>) -> Branches<6, 8> {
@@ -47,9 +47,9 @@ mod solver {
         let (first, second) = (way(links), way(other));
         let regional = [regional_elbow, regional_crossing, regional_general];
         match which % 8 {
-            0 => conclude(&general_arm(&[first, second], &t, length), true),
-            1 => conclude(&three_parallel(&first.links_at(&t)), false),
-            2 => conclude(&three_prismatic(&first.links_at(&t), [0, 2, 4]), false),
+            0 => conclude(&general_arm(&[first, second], &t, length), PRISMATIC, true),
+            1 => conclude(&three_parallel(&first.links_at(&t)), PRISMATIC, false),
+            2 => conclude(&three_prismatic(&first.links_at(&t), [0, 2, 4]), PRISMATIC, false),
             // Arms of three and five joints, completed to the one or the other.
             6 => conclude(
                 &padded(&without_virtual_joints::<6, 3, 8>(
@@ -59,23 +59,25 @@ mod solver {
                     length,
                     ROUNDING,
                 )),
+                PRISMATIC,
                 false,
             ),
             7 => conclude(
                 &padded(&without_virtual_joints::<6, 5, 8>(&second, &three_parallel(&first.links_at(&t)), &t, length, ROUNDING)),
+                PRISMATIC,
                 false,
             ),
             n => {
                 let links = first.links_at(&t);
                 let mut found = spherical_triple(&links, [false; 3], regional[usize::from(n) - 3]);
                 polish(&mut found, &Loop { links: &links, prismatic: [false; 6], target: [0.0; 3], length });
-                conclude(&found, false)
+                conclude(&found, PRISMATIC, false)
             }
         }
     }
 }
 
-use solver::{solve, Solutions, Verdict, MAX_SOLUTIONS, POSITION_LIMITS};
+use solver::{solve, Solutions, Verdict, LENGTH, MAX_SOLUTIONS, POSITION_LIMITS, PRISMATIC};
 
 fuzz_target!(|data: &[u8]| {
     let Some((&which, rest)) = data.split_first() else { return };
@@ -98,13 +100,13 @@ fuzz_target!(|data: &[u8]| {
     let [x, y, z] = frame();
     let found = solve(which, &links, &other, 1.0, &[x, y, z, [0.0, 0.0, 0.0, 1.0]]);
     check(&found);
-    let within = found.within_limits();
+    let within = found.within(POSITION_LIMITS, PRISMATIC, LENGTH);
     check_count(&within);
     assert!(within.count <= found.count && within.verdict == found.verdict);
     for solution in within.as_slice() {
         assert!(solution.q.iter().zip(POSITION_LIMITS).all(|(q, [low, high])| low <= *q && *q <= high), "{solution:?}");
     }
-    assert_eq!(found.nearest_to(&[0.3; 6]).is_some(), found.count > 0);
+    assert_eq!(found.nearest(&[0.3; 6], PRISMATIC).is_some(), found.count > 0);
 });
 
 fn check_count(found: &Solutions) {

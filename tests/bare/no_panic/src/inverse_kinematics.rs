@@ -19,7 +19,7 @@ macro_rules! every_block {
             const PRISMATIC: [bool; DOF] = [false, false, true, false, false, false];
             const POSITION_LIMITS: [[Real; 2]; DOF] = [[-3.0, 3.0]; DOF];
 
-            include!("../../../../inverse-kinematics/src/blocks/solutions.rs");
+            type Solutions = Postures<DOF, MAX_SOLUTIONS>;
 
             fn number() -> Real {
                 black_box(0.3)
@@ -58,8 +58,9 @@ macro_rules! every_block {
             }
 
             fn solutions<const J: usize, const N: usize>(found: &Branches<J, N>) {
-                let solutions = conclude(found, black_box(true));
-                keep((solutions.within_limits(), solutions.nearest_to(&[number(); DOF]), solutions.as_slice().len()));
+                let solutions: Solutions = conclude(found, black_box(PRISMATIC), black_box(true));
+                let within = solutions.within(black_box(POSITION_LIMITS), black_box(PRISMATIC), black_box(LENGTH));
+                keep((within, solutions.nearest(&[number(); DOF], black_box(PRISMATIC)), solutions.as_slice().len()));
             }
 
             /// Solutions of an arm of J joints, completed by virtual ones.

@@ -14,6 +14,7 @@
 
 mod inverse_kinematics;
 mod runtime;
+mod timing;
 
 /// All postures of a pose that the optimiser knows nothing of, and what can be asked of them.
 macro_rules! postures {
@@ -46,6 +47,9 @@ pub extern "C" fn main() -> i32 {
     runtime::every_step::<_, 7, 6, { panda7_f64::PARAMETERS }>(&panda7_f64::Nominal, [X, Y, Z, Rx, Ry, Rz]);
     let parameters = scara_f64::WithParameters { parameters: core::hint::black_box(scara_f64::NOMINAL_PARAMETERS) };
     runtime::every_step::<_, 4, 4, { scara_f64::PARAMETERS }>(&parameters, [X, Y, Z, Rz]);
+    timing::every_timing(&scara_f64::Nominal);
+    timing::every_timing(&scara_f32::Nominal);
+    timing::every_timing(&panda7_f64::Nominal);
     #[cfg(feature = "deliberate-index")]
     core::hint::black_box([1, 2, 3][core::hint::black_box(2)]);
     0

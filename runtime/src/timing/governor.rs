@@ -1,0 +1,313 @@
+//! Stops, overrides and resumes on a timed path, within all limits.
+
+use super::inner::{Assumed, HalfPlanes};
+use super::law::Law;
+use super::segment::{Inner, Segment};
+use super::timed::Timing;
+use crate::linalg::lit;
+use crate::reference::JointReference;
+use crate::scalar::seconds;
+use crate::trajectory::Progress;
+use core::time::Duration;
+use nalgebra::RealField;
+
+/// What a [`Governor`] shall do.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Command<T> {
+    /// Move at this share of the speed ds of the timed motion, from 0 to 1; from rest, too.
+    Override(T),
+    /// Come to rest on the path as soon as the limits allow.
+    Stop,
+}
+
+/// What the arm does on the path.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Phase {
+    /// It moves.
+    Moving,
+    /// It rests on the path, and its limits of torque allow that.
+    Held,
+    /// It shall stop, but no torque within the limits holds it here: it goes on to the next place where it can be held.
+    GoingOn,
+    /// It is at the end of the path.
+    Ended,
+}
+
+/// The motion at a time.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Governed<T, const N: usize> {
+    /// q, dq, ddq.
+    pub reference: JointReference<T, N>,
+    /// s, ds, dds.
+    pub progress: Progress<T>,
+    /// What the arm does.
+    pub phase: Phase,
+}
+
+/// Leads a timed motion: each command becomes a motion on the same path that keeps the limits of the timing on all of every segment.
+///
+/// At the start of each segment, and where the command changes, the rows of the limits give the interval of x = ds² at the segment's end.
+/// It is cut by the interval from which the end of the path can be reached. An override takes the value nearest to r² x of the timed motion,
+/// a stop the least. So speeds change as fast as torques and accelerations allow, and each later command finds a motion.
+#[derive(Clone, Debug)]
+pub struct Governor<'a, T, const N: usize> {
+    timing: Timing<'a, T, N>,
+    /// Of each segment: from an x at its start between these the end can be reached.
+    reachable: &'a [[T; 2]],
+    command: Command<T>,
+    phase: Phase,
+    segment: usize,
+    /// The fraction of the segment at which the law begins.
+    from: T,
+    rows: Rows<T>,
+    law: Law<T>,
+    /// How long the law takes, and the time since it began, s.
+    duration: T,
+    time: T,
+}
+
+/// The rows of a segment for one k, and what they assume.
+#[derive(Clone, Copy, Debug)]
+struct Rows<T> {
+    k: T,
+    assumed: Assumed<T>,
+}
+
+/// From which to which share of the timed motion's x rows hold; the last share has no upper end. Narrow windows have tight chords of
+/// sqrt(x), wide ones connect them.
+const WINDOWS: [[f64; 2]; 4] = [[0.0, 1.0], [0.0, 0.5], [0.3, 1.0], [0.8, 1.0]];
+/// Rows that are tried: those of the timed motion, and with three k of each window.
+const ROWS: usize = 1 + 3 * WINDOWS.len();
+
+impl<'a, T: RealField + Copy, const N: usize> Governor<'a, T, N> {
+    /// At the start of the path, held there until the first command. `storage` needs an element for each segment of the timing; `None` where it is shorter.
+    pub fn new(timing: &Timing<'a, T, N>, storage: &'a mut [[T; 2]]) -> Option<Self> {
+        let segments = timing.all();
+        let reachable = storage.get_mut(..segments.len())?;
+        let first = segments.first()?;
+        let end = segments.last()?.inner.law.x2;
+        let mut next = [end, end];
+        for (segment, of) in segments.iter().zip(reachable.iter_mut()).rev() {
+            *of = backwards(timing, segment, next);
+            next = *of;
+        }
+        let rest = Law { length: first.length, x0: T::zero(), k: T::zero(), x2: T::zero() };
+        let mut governor = Self {
+            timing: *timing,
+            reachable,
+            command: Command::Stop,
+            phase: Phase::Held,
+            segment: 0,
+            from: T::zero(),
+            rows: Rows { k: T::zero(), assumed: first.inner.assumed },
+            law: rest,
+            duration: T::zero(),
+            time: T::zero(),
+        };
+        if first.inner.law.x0 > T::zero() {
+            governor.command = Command::Override(T::one());
+            governor.plan(first.inner.law.x0, T::zero(), None);
+        }
+        Some(governor)
+    }
+
+    /// The motion a time `period` later, under a command.
+    pub fn advance(&mut self, period: Duration, command: Command<T>) -> Governed<T, N> {
+        if command != self.command {
+            self.command = command;
+            self.change();
+        }
+        let mut left = seconds::<T>(period);
+        // Each round but the last one leaves a segment.
+        for _ in 0..=self.timing.segments() {
+            if matches!(self.phase, Phase::Held | Phase::Ended) {
+                break;
+            }
+            if self.time + left < self.duration {
+                self.time += left;
+                break;
+            }
+            left -= self.duration - self.time;
+            self.leave();
+        }
+        self.sample()
+    }
+
+    /// The motion now.
+    pub fn sample(&self) -> Governed<T, N> {
+        let progress = self.progress();
+        Governed { reference: self.timing.reference(&progress), progress, phase: self.phase }
+    }
+
+    /// From which to which x = ds² at the start of a segment the end of the path can be reached; `None` where there are not as many segments.
+    /// A stop is possible at the start of the segment if the lower end is 0.
+    pub fn reachable(&self, segment: usize) -> Option<[T; 2]> {
+        self.reachable.get(segment).copied()
+    }
+
+    fn progress(&self) -> Progress<T> {
+        let all = self.timing.all();
+        let zero = T::zero();
+        let Some(segment) = all.get(self.segment) else {
+            let last = all.last();
+            return Progress {
+                s: last.map_or(zero, Segment::end),
+                ds: last.map_or(zero, |of| of.inner.law.x2.max(zero).sqrt()),
+                dds: zero,
+            };
+        };
+        let start = segment.start + segment.length * self.from;
+        if self.phase == Phase::Held {
+            return Progress { s: start, ds: zero, dds: zero };
+        }
+        let (s, ds, dds) = self.law.at(self.time);
+        Progress { s: start + s, ds, dds }
+    }
+
+    /// A new command: the rest of the segment is a segment.
+    fn change(&mut self) {
+        let (zero, one) = (T::zero(), T::one());
+        match self.phase {
+            Phase::Held if self.wants_to_move() => {
+                self.plan(zero, zero, None);
+            }
+            Phase::Held | Phase::Ended => {}
+            Phase::Moving | Phase::GoingOn => {
+                let (s, ..) = self.law.at(self.time);
+                let t = s / self.law.length;
+                let rest = one - t;
+                if rest > lit(1e-6) {
+                    // The motion until now stays possible: its rows hold on every part of the segment.
+                    let rows = Rows { k: self.rows.k * rest * rest, assumed: self.rows.assumed };
+                    self.plan(self.law.x(t).max(zero), self.from + (one - self.from) * t, Some(rows));
+                }
+            }
+        }
+    }
+
+    fn wants_to_move(&self) -> bool {
+        matches!(self.command, Command::Override(r) if r > T::zero())
+    }
+
+    /// Goes on to the next segment, or rests.
+    fn leave(&mut self) {
+        let (zero, x) = (T::zero(), self.law.x2.max(T::zero()));
+        self.segment += 1;
+        self.from = zero;
+        self.time = zero;
+        if self.segment >= self.timing.segments() {
+            self.phase = Phase::Ended;
+        } else if x == zero && !self.wants_to_move() && self.can_rest(self.segment) {
+            self.phase = Phase::Held;
+        } else if !self.plan(x, zero, None) {
+            // By construction some rows have a motion. Should rounding leave none, the speed stays as near as possible.
+            let Some(segment) = self.timing.all().get(self.segment) else { return };
+            let [low, high] = self.next(self.segment);
+            self.law = Law { length: segment.length, x0: x, k: zero, x2: x.max(low).min(high) };
+            self.duration = self.law.duration();
+        }
+    }
+
+    /// Whether the arm can be held at the start of a segment. From rest before the last one it could only go to rest at its end.
+    fn can_rest(&self, segment: usize) -> bool {
+        let Timing { limits, friction, .. } = &self.timing;
+        let of = self.timing.all().get(segment).filter(|_| segment + 1 < self.timing.segments());
+        of.is_some_and(|of| of.unheld(false, limits, friction).is_none())
+    }
+
+    /// From these x at the end of a segment the end of the path can be reached.
+    fn next(&self, segment: usize) -> [T; 2] {
+        let end = self.timing.all().last().map_or(T::zero(), |last| last.inner.law.x2);
+        self.reachable.get(segment + 1).copied().unwrap_or([end, end])
+    }
+
+    /// Chooses the law from an x at the fraction `from` of the segment to its end; whether there is one.
+    fn plan(&mut self, x: T, from: T, current: Option<Rows<T>>) -> bool {
+        let (zero, one) = (T::zero(), T::one());
+        let Some(whole) = self.timing.all().get(self.segment) else { return false };
+        let timed = whole.inner.law;
+        let can_stop = x > zero && (self.segment + 1 == self.timing.segments() || self.can_rest(self.segment + 1));
+        let (target, phase) = match self.command {
+            Command::Override(r) if r > zero => (timed.x2 * r.min(one) * r.min(one), Phase::Moving),
+            _ if can_stop => (zero, Phase::Moving),
+            // On at half the speed, without getting faster.
+            _ => ((timed.x2 * lit(0.25)).min(if x > zero { x } else { timed.x2 }), Phase::GoingOn),
+        };
+        let (width, here) = (one - from, timed.x(from));
+        let part = if from > zero { whole.part(from) } else { *whole };
+        let scale = match (here > zero, timed.x2 > zero) {
+            (true, _) => (x / here).min(one),
+            (false, true) => target / timed.x2,
+            (false, false) => one,
+        };
+        let others = candidates(&self.timing, whole, Some(scale));
+        let others = others.into_iter().flatten().map(|rows| Rows { k: rows.k * width * width, ..rows });
+        let mut best: Option<(T, T, Law<T>, Rows<T>)> = None;
+        for rows in current.into_iter().chain(others) {
+            let Some([low, high]) = rows.planes(&self.timing, &part, self.next(self.segment)).interval_from(x) else { continue };
+            for x2 in [target.max(low).min(high), high] {
+                let law = Law { length: part.length, x0: x, k: rows.k, x2 };
+                let (off, duration) = ((x2 - target).abs(), law.duration());
+                if duration.is_finite() && best.as_ref().is_none_or(|(least, ..)| off < *least) {
+                    best = Some((off, duration, law, rows));
+                }
+            }
+        }
+        let Some((_, duration, law, rows)) = best else { return false };
+        (self.law, self.rows, self.duration, self.time) = (law, rows, duration, zero);
+        (self.from, self.phase) = (from, phase);
+        true
+    }
+}
+
+impl<T: RealField + Copy> Rows<T> {
+    fn planes<const N: usize>(&self, timing: &Timing<'_, T, N>, segment: &Segment<T, N>, next: [T; 2]) -> HalfPlanes<T, N> {
+        HalfPlanes::new(segment, &timing.limits, &timing.friction, self.k, &self.assumed, next)
+    }
+}
+
+/// The rows that are tried on a segment: those of the timed motion, and for each window with k = 0, with the k of the timed motion at the
+/// speed of the window, and with that times `scale`.
+fn candidates<T: RealField + Copy, const N: usize>(
+    timing: &Timing<'_, T, N>,
+    segment: &Segment<T, N>,
+    scale: Option<T>,
+) -> [Option<Rows<T>>; ROWS] {
+    let Inner { law, assumed, .. } = segment.inner;
+    let (zero, half) = (T::zero(), lit::<T>(0.5));
+    let least = law.x0.min(law.middle()).min(law.x2).max(zero);
+    let most = law.x0.max(law.middle()).max(law.x2);
+    // Without viscous friction nothing depends on the window.
+    let windows = if timing.friction.iter().any(|f| f.viscous != zero) { WINDOWS.len() } else { 1 };
+    let mut rows = [None; ROWS];
+    let (first, others) = rows.split_at_mut(1);
+    first.fill(Some(Rows { k: law.k, assumed }));
+    for (of, window) in others.chunks_exact_mut(3).zip(&WINDOWS).take(windows) {
+        let [from, to] = window.map(lit::<T>);
+        let share = (from + to) * half;
+        let top = if to < T::one() { most * to } else { assumed.x[1] };
+        let touch = (law.x(half) * share).max(top * lit(1e-9)).max(lit(1e-30));
+        let assumed = Assumed { x: [least * from, top], touch, u: assumed.u };
+        for (to, k) in of.iter_mut().zip([Some(zero), Some(law.k * share), scale.map(|scale| law.k * scale)]) {
+            *to = k.map(|k| Rows { k, assumed });
+        }
+    }
+    rows
+}
+
+/// From which x at the start of a segment some rows lead to an x in `next`: the interval around the timed motion.
+fn backwards<T: RealField + Copy, const N: usize>(timing: &Timing<'_, T, N>, segment: &Segment<T, N>, next: [T; 2]) -> [T; 2] {
+    let mut found = [None; ROWS];
+    for (to, rows) in found.iter_mut().zip(candidates(timing, segment, None)) {
+        *to = rows.and_then(|rows| rows.planes(timing, segment, next).backwards(rows.assumed.x[0], rows.assumed.x[1]));
+    }
+    let mut all = segment.inner.interval;
+    for _ in 0..ROWS {
+        for [low, high] in found.iter().flatten() {
+            if *low <= all[1] && *high >= all[0] {
+                all = [all[0].min(*low), all[1].max(*high)];
+            }
+        }
+    }
+    all
+}

@@ -1,0 +1,153 @@
+//! Stops, overrides and resumes: every sample keeps the limits by dynamics written apart, and the end is always reached.
+
+use crate::common::chain::{self, Chain, PANDA_LIMITS, SCARA_LIMITS, UR5_LIMITS};
+use crate::timing::{random, random_path, with_timing};
+use armgen_runtime::timing::{Command, Ends, Governed, Governor, Limits, Phase, Timing};
+use std::time::Duration;
+
+/// The limits of a test: speed, torque.
+type Bounds<const N: usize> = ([f64; N], [f64; N]);
+
+fn limits<const N: usize>((velocity, effort): Bounds<N>) -> Limits<f64, N> {
+    Limits::velocity(velocity).unwrap().with_effort(effort.map(|x| -x), effort).unwrap()
+}
+
+/// The largest share of a limit at a sample.
+fn share<const N: usize>(chain: &Chain<N>, (velocity, effort): Bounds<N>, at: &Governed<f64, N>) -> f64 {
+    let reference = &at.reference;
+    let tau = chain.torque_with_friction(&reference.q, &reference.dq, &reference.ddq);
+    (0..N).fold(0.0, |most: f64, j| most.max(reference.dq[j].abs() / velocity[j]).max(tau[j].abs() / effort[j]))
+}
+
+/// Random commands at random samples until the end; (samples, largest share, stops that came to rest, longest time from a stop to rest in s).
+fn governed<const N: usize>(
+    chain: &Chain<N>,
+    bounds: Bounds<N>,
+    timing: &Timing<'_, f64, N>,
+    next: &mut impl FnMut() -> f64,
+) -> (usize, f64, usize, f64) {
+    let mut storage = vec![[0.0; 2]; timing.segments()];
+    let mut governor = Governor::new(timing, &mut storage).expect("an interval for each segment");
+    let (mut worst, mut samples, mut rests, mut longest) = (0.0f64, 0, 0, 0.0f64);
+    let mut command = Command::Override(1.0);
+    let (mut s, mut since) = (f64::NEG_INFINITY, 0.0);
+    loop {
+        if next() < 0.01 {
+            let before = command;
+            command = match (4.0 * next()) as u8 {
+                0 => Command::Stop,
+                1 => Command::Override(1.0),
+                _ => Command::Override(0.05 + 0.95 * next()),
+            };
+            if before != command {
+                since = 0.0;
+            }
+        }
+        let period = 2e-3 * next() + 1e-4;
+        let at = governor.advance(Duration::from_secs_f64(period), command);
+        since += period;
+        samples += 1;
+        assert!(at.progress.s >= s - 1e-12, "back from {s} to {}", at.progress.s);
+        s = at.progress.s;
+        let most = share(chain, bounds, &at);
+        assert!(most <= 1.0 + 1e-9, "sample {samples} at {at:?} under {command:?}: {most}");
+        worst = worst.max(most);
+        match at.phase {
+            Phase::Ended => return (samples, worst, rests, longest),
+            Phase::Held => {
+                assert!(command == Command::Stop && at.progress.ds == 0.0 && at.reference.ddq.amax() == 0.0, "{at:?}");
+                if since > 0.0 {
+                    longest = longest.max(since);
+                    rests += 1;
+                    since = f64::NEG_INFINITY;
+                }
+            }
+            Phase::Moving | Phase::GoingOn => {}
+        }
+        assert!(samples < 1_000_000, "the end is not reached: {at:?} under {command:?}");
+    }
+}
+
+fn table<const N: usize>(name: &str, chain: &Chain<N>, bounds: Bounds<N>, range: [f64; N], paths: u64) {
+    let (mut all, mut worst, mut stops, mut slowest) = (0, 0.0f64, 0, 0.0f64);
+    for seed in 0..paths {
+        let mut next = random(seed + 100);
+        let path = random_path(&mut next, range);
+        with_timing(chain, &path, &limits(bounds), Ends { hold: false, ..Ends::at_rest() }, 1e-3, 1000, |timing| {
+            let timing = timing.unwrap_or_else(|error| panic!("{name}, path {seed}: {error}"));
+            for _ in 0..4 {
+                let (samples, share, rests, longest) = governed(chain, bounds, &timing, &mut next);
+                (all, worst, stops, slowest) = (all + samples, worst.max(share), stops + rests, slowest.max(longest));
+            }
+        });
+    }
+    println!("{name}: {all} samples, {stops} stops, at rest after at most {slowest:.2} s, share 1 - {:.1e}", 1.0 - worst);
+    assert!(stops > 0 && worst > 0.5, "{name}: {stops} stops, {worst}");
+}
+
+fn tables(paths: u64) {
+    table("scara", &chain::scara(), SCARA_LIMITS, [2.0, 2.0, 0.3, 3.0], paths);
+    table("ur5", &chain::ur5().without_friction(), UR5_LIMITS, [3.0; 6], paths);
+    table("ur5, friction", &chain::ur5(), UR5_LIMITS, [3.0; 6], paths);
+    table("panda, friction", &chain::panda(), PANDA_LIMITS, [2.5, 1.7, 2.5, 1.5, 2.5, 1.8, 2.5], paths);
+}
+
+#[test]
+fn few_random_commands_keep_all_limits() {
+    tables(1);
+}
+
+#[test]
+#[ignore = "wide"]
+fn random_commands_keep_all_limits() {
+    tables(20);
+}
+
+#[test]
+fn full_speed_is_the_timed_motion_and_half_speed_takes_twice_as_long() {
+    let chain = chain::scara();
+    let path = random_path(&mut random(7), [2.0, 2.0, 0.3, 3.0]);
+    with_timing(&chain, &path, &limits(SCARA_LIMITS), Ends::at_rest(), 1e-3, 1000, |timing| {
+        let timing = timing.expect("a timing");
+        let mut storage = vec![[0.0; 2]; timing.segments()];
+        assert!(Governor::new(&timing, &mut storage[1..]).is_none());
+        let step = Duration::from_millis(1);
+        for (share, factor) in [(1.0, 1.0), (0.5, 2.0)] {
+            let mut governor = Governor::new(&timing, &mut storage).expect("an interval for each segment");
+            assert_eq!(governor.sample().phase, Phase::Held);
+            let mut time = Duration::ZERO;
+            loop {
+                time += step;
+                let at = governor.advance(step, Command::Override(share));
+                if share == 1.0 {
+                    let apart = (at.reference.q - timing.sample(time).q).amax();
+                    assert!(apart < 1e-6, "{apart} at {time:?}");
+                }
+                if at.phase == Phase::Ended {
+                    break;
+                }
+            }
+            let ratio = time.as_secs_f64() / timing.seconds();
+            assert!((ratio - factor).abs() < 0.02, "{ratio} at {share}");
+        }
+    });
+}
+
+#[test]
+fn a_stop_keeps_the_arm_and_a_resume_goes_on() {
+    let chain = chain::scara();
+    let path = random_path(&mut random(8), [2.0, 2.0, 0.3, 3.0]);
+    with_timing(&chain, &path, &limits(SCARA_LIMITS), Ends::at_rest(), 1e-3, 1000, |timing| {
+        let timing = timing.expect("a timing");
+        let mut storage = vec![[0.0; 2]; timing.segments()];
+        let mut governor = Governor::new(&timing, &mut storage).expect("an interval for each segment");
+        let half = timing.duration() / 2;
+        assert!(governor.advance(half, Command::Override(1.0)).progress.ds > 0.0);
+        let stopped = governor.advance(Duration::from_secs(1), Command::Stop);
+        assert_eq!(stopped.phase, Phase::Held);
+        assert_eq!(governor.advance(Duration::from_secs(9), Command::Override(0.0)).progress, stopped.progress);
+        let end = governor.advance(Duration::from_secs(60), Command::Override(1.0));
+        assert_eq!(end.phase, Phase::Ended);
+        assert!((end.reference.q - timing.sample(timing.duration()).q).amax() < 1e-12);
+    });
+}
