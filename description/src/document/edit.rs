@@ -291,8 +291,8 @@ impl<'s> Editor<'s> {
                 for (name, value) in entries {
                     self.visit(value, &under(changes, depth, &key(&name.value)), depth + 1)?;
                 }
-                for name in missing(entries, changes, depth) {
-                    self.add(node, name, &under(changes, depth, &key(name)), depth + 1);
+                for (k, name) in missing(entries, changes, depth).into_iter().enumerate() {
+                    self.add(node, name, k, &under(changes, depth, &key(name)), depth + 1);
                 }
                 Ok(())
             }
@@ -311,15 +311,15 @@ impl<'s> Editor<'s> {
         Ok(())
     }
 
-    /// Adds a key to a mapping.
-    fn add(&mut self, node: &Node, name: &str, changes: &[&Change], depth: usize) {
+    /// Adds a key to a mapping, after `others` that were added before it.
+    fn add(&mut self, node: &Node, name: &str, others: usize, changes: &[&Change], depth: usize) {
         let Kind::Mapping(entries) = &node.kind else { return };
         let entry = format!("{name}: {}", flow(None, changes, depth));
         let (first, last) = match (entries.first(), entries.last()) {
             (Some((first, _)), Some((_, last))) => (first.span, last.place().end),
             _ => {
                 let at = node.span.start + 1;
-                self.edits.push((at, at, entry));
+                self.edits.push((at, at, if others == 0 { entry } else { format!(", {entry}") }));
                 changes.iter().for_each(|change| self.remark(at, change));
                 return;
             }

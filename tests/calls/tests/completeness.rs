@@ -27,7 +27,8 @@ fn missing(called: &str) -> BTreeSet<String> {
 fn every_public_function_of_the_runtime_is_called() {
     let steps = ["runtime.rs", "timing.rs"].map(|file| fs::read_to_string(project("tests/bare/no_panic/src").join(file)));
     // One file may have comments on itself only at its start.
-    let called = steps.map(|text| text.expect("the calls are there").replace("//!", "//")).concat() + &method_calls(&generated().runtime);
+    let called =
+        steps.map(|text| text.expect("the calls are there").replace("//!", "//")).concat() + &method_calls(&generated().runtime);
     assert_eq!(missing(&called), BTreeSet::new(), "these are not called by tests/bare/no_panic/src");
     // The check detects an omission of each kind.
     for name in ["manipulability", "left_singular", "NullSpace::new", "Dynamics::gravity", "Path::check_reach", "Clik::approach"]
