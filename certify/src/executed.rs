@@ -43,7 +43,7 @@ fn functions(source: &Source, programs: &[&Program<f64>], report: &mut Report) -
         function.program = read(own, &function.program.outputs).map_err(|fault| format!("{name}: {fault}"))?;
     }
     let vector = Vector::of(&manipulator, &constants::parameter_names(&module))?;
-    let claims = Claims::from_numbers(&generated.constants).used(&module, &constants::claimed_constants(&vector, &module));
+    let claims = Claims::from_numbers(&generated.constants)?.used(&module, &constants::claimed_constants(&vector, &module));
     let base = constants::base_parameters(&manipulator, &claims, &module);
     let checker = Checker::new(manipulator, vector, claims, Effort::default(), &module, base)?;
     report.functions = checker.functions(&module);

@@ -256,12 +256,13 @@ Exit codes: 0 equal, 1 not equal or faulty (the first entry that differs is name
     },
     /// Identify base parameters, friction and drive gains from logs of an arm
     #[command(after_help = "Examples:
-  armgen identify robot.yaml log.csv --report out
+  armgen identify robot.yaml log.csv --out identified.yaml --report out
   armgen identify robot.yaml free.csv loaded.csv --load 2.5 --options identify.yaml
   armgen identify robot.yaml --validate held_out.csv             judges the numbers of the file
 
 Logs are CSV with columns t, q_JOINT, dq_JOINT (optional), tau_JOINT or current_JOINT; options rename
-columns and give units, loads and sessions (docs/identification.md).
+columns and give units, loads and sessions (docs/identification.md). The file of --out is the
+description with new numbers, their intervals as comments; every other byte stays.
 Exit codes: 0 done, 1 the description, the options or a log is faulty, or parameters do not show,
 2 a file cannot be read or written.")]
     Identify {
@@ -280,6 +281,9 @@ Exit codes: 0 done, 1 the description, the options or a log is faulty, or parame
         /// Mass of the load at the end effector in the last log, kg
         #[arg(long, value_name = "MASS")]
         load: Option<f64>,
+        /// File for the description with the identified numbers
+        #[arg(long, value_name = "IDENTIFIED.yaml", value_hint = ValueHint::FilePath)]
+        out: Option<PathBuf>,
         /// Folder for report.json
         #[arg(long, value_name = "DIR", value_hint = ValueHint::DirPath)]
         report: Option<PathBuf>,
@@ -515,8 +519,8 @@ fn run(command: Command) -> u8 {
         Command::Convert { file, convention, out } => convert::run(&file, convention, out.as_ref()),
         Command::Export { file, format, out } => export::run(&file, format, out.as_ref()),
         Command::Verify { description, module, language } => commands::verify::run(&description, &module, language),
-        Command::Identify { file, logs, options, validate, load, report, skip_bad, accept_unexcited } => {
-            let asked = commands::identify::Asked { logs, options, validate, load, report, skip_bad, accept_unexcited };
+        Command::Identify { file, logs, options, validate, load, out, report, skip_bad, accept_unexcited } => {
+            let asked = commands::identify::Asked { logs, options, validate, load, report, out, skip_bad, accept_unexcited };
             commands::identify::run(&file, &asked)
         }
         Command::Time { file, path, asked } => commands::time::run(&file, path.as_deref(), &asked),

@@ -316,6 +316,19 @@ pub enum RegressorDescription {
 }
 
 impl RobotDescription {
+    /// The unit of the file for numbers of a dimension; `None` for the SI unit.
+    pub fn unit(&self, dimension: Dimension) -> Option<Unit> {
+        units::of(self).remove(&dimension)
+    }
+
+    /// How often a name occurs in expressions, those of `parameters` included.
+    pub fn uses(&self, name: &str) -> usize {
+        let count = |expression: &Expression| expression.names().iter().filter(|used| **used == name).count();
+        let mut uses = self.parameters.iter().filter_map(|parameter| parameter.value.as_ref()).map(count).sum();
+        self.each_value(|_, _, expression| uses += count(expression));
+        uses
+    }
+
     /// Reads a YAML description; `None` if the text holds no mapping at all.
     pub fn parse(source: &Source) -> (Option<RobotDescription>, Diagnostics) {
         let mut diagnostics = Diagnostics::new();

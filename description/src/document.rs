@@ -3,10 +3,12 @@
 //! ```text
 //! Source -> yaml.rs: tree of nodes -> reader.rs: keys and kinds of values
 //!                                     expression.rs: scalar -> Expression
+//! tree of nodes and new values -> edit.rs: the text with these values, all else as it was
 //! ```
 //!
 //! Nothing here knows the kind of a file: the caller of the reader defines the keys and their values.
 
+pub mod edit;
 mod expression;
 pub mod reader;
 pub mod yaml;

@@ -52,10 +52,16 @@ pub struct Joint {
 pub struct Link {
     /// Of the file, in the link frame.
     pub own: Ten,
+    /// The same as the file gives it: mass, centre of mass, inertia about that in `axes`: xx, xy, yy, xz, yz, zz.
+    pub given: [f64; 10],
     /// Of the file, in the link frame; known.
     pub attached: Ten,
-    /// The origin of the next link's frame, or of the end effector, in the link frame.
-    pub towards: Vector3<f64>,
+    /// Bodies that are attached to it.
+    pub attachments: usize,
+    /// The origins of its joint frame and of the next one, or of the end effector, in the link frame.
+    pub ends: [Vector3<f64>; 2],
+    /// The axes in which the file has the inertia, in the link frame.
+    pub axes: Matrix3<f64>,
 }
 
 /// A base parameter.
@@ -167,19 +173,23 @@ impl Arm {
             .map(|i| {
                 let bodies = &given.joints[i].link;
                 let next = given.joints.iter().position(|joint| joint.parent.is_some_and(|parent| parent.0 as usize == i));
-                let towards = match next {
-                    Some(next) => {
-                        // The next link's origin at q = 0, from the joint frame of this link to its link frame.
-                        let joint = &given.joints[next];
-                        let there = joint.placement.then(&joint.link_frame);
-                        translation(&given.joints[i].link_frame.inverse().then(&there).translation)
-                    }
+                let joint_frame = given.joints[i].link_frame.inverse();
+                let end = match next {
+                    Some(next) => translation(&joint_frame.then(&given.joints[next].placement).translation),
                     None => translation(&given.tool.frame.translation),
                 };
+                let axes = bodies.first().map(|body| &body.axes.frame.rotation);
                 Link {
                     own: bodies.first().map_or([0.0; 10], |body| ten_of(given, &body.body)),
+                    given: bodies.first().map_or([0.0; 10], |body| {
+                        let values = std::iter::once(&body.given.mass).chain(&body.given.com).chain(&body.given.inertia);
+                        let values: Vec<f64> = values.map(|value| number(given, value)).collect();
+                        std::array::from_fn(|k| values[k])
+                    }),
                     attached: sum(given, bodies.get(1..).unwrap_or_default()),
-                    towards,
+                    attachments: bodies.len().saturating_sub(1),
+                    ends: [translation(&joint_frame.translation), end],
+                    axes: axes.map_or_else(Matrix3::identity, |axes| Matrix3::from_fn(|i, j| axes[i][j].to_f64())),
                 }
             })
             .collect();

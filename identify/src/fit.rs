@@ -31,7 +31,7 @@ pub struct Equations {
 }
 
 /// A'WA, A'Wb, b'Wb.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Default)]
 pub struct Gram {
     /// A'WA.
     pub h: DMatrix<f64>,

@@ -92,13 +92,15 @@ pub struct Identified {
     /// Blocks of time that it rests on.
     pub blocks: usize,
     /// Reduced data over base parameters and the friction of the last session.
-    pub reduced: Option<Reduced>,
+    pub reduced: Reduced,
+    /// Friction that options give: joint, term, value.
+    pub held: Vec<(usize, Friction, f64)>,
     /// Each log against the model.
     pub judgements: Vec<Judgement>,
 }
 
 /// The least squares of all logs, reduced to base parameters and the friction that is written.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Default)]
 pub struct Reduced {
     /// A'WA, A'Wb, b'Wb over base parameters, then `friction`.
     pub gram: Gram,
@@ -327,7 +329,14 @@ pub fn identify(arm: &Arm, inputs: &[Input], options: &Options, findings: &mut F
             .collect();
         found.loads.push((log, ten));
     }
-    found.reduced = Some(reduce(&estimate, &equations, found.sessions.len() - 1));
+    found.reduced = reduce(&estimate, &equations, found.sessions.len() - 1);
+    for &(place, value) in &estimate.fixed {
+        if let Column::Friction(session, joint, term) = estimate.columns[place] {
+            if session + 1 == found.sessions.len() {
+                found.held.push((joint, term, value));
+            }
+        }
+    }
     // The correction of gains applies to the torques that the model is judged by.
     for log in logs.iter_mut().filter(|log| log.is_current) {
         for (column, correction) in log.effort.iter_mut().zip(&estimate.corrections) {
@@ -517,7 +526,7 @@ fn directions(estimate: &Estimate<'_>, solution: &Solution, matrix: &DMatrix<f64
             return f64::INFINITY;
         }
         let mass = arm.links[link].own[0].max(0.1);
-        let length = arm.links[link].towards.norm().max(0.1);
+        let length = arm.links[link].ends.iter().fold(0.1, |length: f64, end| length.max(end.norm()));
         mass * [1.0, length, length * length][usize::from(k > 0) + usize::from(k > 3)]
     };
     for k in 0..estimate.active.len() {

@@ -8,6 +8,7 @@
 
 pub mod arm;
 pub mod body;
+pub mod consistent;
 pub mod estimate;
 pub mod finding;
 pub mod fit;
@@ -19,3 +20,4 @@ pub mod prepare;
 pub mod report;
 pub mod signal;
 pub mod suspect;
+pub mod written;

@@ -45,7 +45,7 @@ impl Friction {
 
     /// Whether its coefficient is at least 0.
     pub fn is_not_negative(self) -> bool {
-        matches!(self, Friction::Viscous | Friction::Coulomb | Friction::Load)
+        matches!(self, Friction::Viscous | Friction::Coulomb | Friction::Load | Friction::Stribeck)
     }
 
     /// The column at a rate; `eps` smooths the sign, `size` is |g| of the joint, `velocity` that of Stribeck friction.

@@ -6,6 +6,7 @@ use crate::arm::Arm;
 use crate::finding::Findings;
 use crate::identify::{Identified, Input, Interval};
 use crate::judge::Judgement;
+use crate::written::Written;
 
 fn number(x: f64) -> Value {
     if x.is_finite() {
@@ -66,7 +67,15 @@ pub fn findings(findings: &Findings) -> Value {
 }
 
 /// The report of an identification: numbers over joints in the order of the description.
-pub fn json(arm: &Arm, inputs: &[Input], found: &Identified, validation: &[(String, Judgement)], all: &Findings) -> Value {
+pub fn json(
+    arm: &Arm,
+    inputs: &[Input],
+    found: &Identified,
+    written: Option<&Written>,
+    validation: &[(String, Judgement)],
+    all: &Findings,
+) -> Value {
+    let constrained = written.map(|written| written.consistent.base(arm));
     let logs: Vec<Value> = inputs
         .iter()
         .map(|input| {
@@ -86,9 +95,11 @@ pub fn json(arm: &Arm, inputs: &[Input], found: &Identified, validation: &[(Stri
         .base
         .iter()
         .zip(&found.base)
-        .map(|(parameter, value)| {
+        .enumerate()
+        .map(|(k, (parameter, value))| {
             let own = json!({"name": parameter.name, "combination": parameter.meaning, "excited": value.excited});
-            with(own, interval(value))
+            let written = constrained.as_ref().map_or_else(|| json!({}), |base| json!({"constrained": number(base[k])}));
+            with(with(own, interval(value)), written)
         })
         .collect();
     let friction: Vec<Value> = found
@@ -151,6 +162,19 @@ pub fn json(arm: &Arm, inputs: &[Input], found: &Identified, validation: &[(Stri
             "log_det_per_parameter": number(found.log_det_per_parameter),
             "unexcited": unexcited,
         },
+        "written": written.map(|written| {
+            let of = &written.consistent;
+            json!({
+                "digits": written.digits,
+                "changed": written.changed,
+                "positive": true,
+                "pivots": written.pivots.iter().map(|pivots| numbers(pivots)).collect::<Vec<_>>(),
+                "objective": number(of.objective),
+                "unconstrained": number(of.unconstrained),
+                "mu": number(of.mu),
+                "notes": written.notes,
+            })
+        }),
         "diagnostics": findings(all),
     })
 }

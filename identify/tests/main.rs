@@ -4,4 +4,5 @@ mod arms;
 mod codes;
 mod coverage;
 mod options;
+mod text;
 mod truth;

@@ -158,7 +158,9 @@ const IDENTIFY: Layers = &[
     ("suspect", &["arm", "estimate", "finding", "fit", "log", "signal"]),
     ("judge", &["arm", "log", "prepare", "signal"]),
     ("identify", &["arm", "body", "estimate", "finding", "fit", "judge", "log", "options", "prepare", "signal", "suspect"]),
-    ("report", &["arm", "body", "finding", "identify", "judge"]),
+    ("consistent", &["arm", "body", "fit", "identify"]),
+    ("written", &["arm", "body", "consistent", "identify", "prepare"]),
+    ("report", &["arm", "body", "finding", "identify", "judge", "written"]),
 ];
 
 const COMMANDS: Layers =

@@ -1,11 +1,12 @@
 //! `armgen identify`: from logs to the numbers of an arm.
 
 use std::fs::File;
-use std::io::BufReader;
+use std::io::{BufReader, Read};
 use std::path::{Path, PathBuf};
 
 use armgen_codegen::kinds::Scalar;
 use armgen_identify::arm::Arm;
+use armgen_identify::consistent::consistent;
 use armgen_identify::finding::{Code, Finding, Findings};
 use armgen_identify::identify::{identify, Identified, Input, Interval};
 use armgen_identify::judge::{judge, Judgement, Model};
@@ -13,6 +14,7 @@ use armgen_identify::log::{self, Format, Log};
 use armgen_identify::options::{self, Load, LogOptions, Options};
 use armgen_identify::prepare::Friction;
 use armgen_identify::report;
+use armgen_identify::written::{write, Written};
 use serde_json::json;
 
 use super::verify::with_spinner;
@@ -26,6 +28,7 @@ pub(crate) struct Asked {
     pub(crate) validate: Vec<PathBuf>,
     pub(crate) load: Option<f64>,
     pub(crate) report: Option<PathBuf>,
+    pub(crate) out: Option<PathBuf>,
     pub(crate) skip_bad: bool,
     pub(crate) accept_unexcited: bool,
 }
@@ -71,27 +74,72 @@ fn run_or_exit_code(file: &Path, asked: &Asked) -> Result<u8, u8> {
         return Err(refused(&findings));
     }
     if inputs.is_empty() {
+        if let Some(out) = &asked.out {
+            terminal::error(&format!("{}: without a log to identify from there is nothing to write", out.display()));
+            return Err(UNREADABLE);
+        }
         return judged(&arm, held_out, asked, &findings);
     }
     let found = with_spinner("identifying", || identify(&arm, &inputs, &chosen, &mut findings));
     let Some(found) = found.filter(|_| !findings.has_errors()) else { return Err(refused(&findings)) };
-    let model = model(&arm, &found);
+    let is_shown = found.unexcited.is_empty() || asked.accept_unexcited;
+    let written = match asked.out.as_ref().filter(|_| is_shown) {
+        None => None,
+        Some(_) => {
+            let bodies = consistent(&arm, &found.reduced);
+            let written = with_spinner("writing", || write(&source, &arm, &found, &bodies));
+            Some(written.map_err(|reason| {
+                terminal::error(&reason);
+                FAULTY
+            })?)
+        }
+    };
+    let model = model(&arm, &found, written.as_ref());
     let mut validation = Vec::new();
     for log in held_out {
         let log = in_torques(&arm, log, &found.gains)?;
         validation.push((log.name.clone(), judge(&arm, &log, &model)));
     }
     terminal::diagnose(&findings.render());
-    let code = terminal::print(&table(&arm, &inputs, &found, &validation));
+    let mut code = terminal::print(&table(&arm, &inputs, &found, &validation));
     if let Some(folder) = &asked.report {
-        let report = report::json(&arm, &inputs, &found, &validation, &findings);
+        let report = report::json(&arm, &inputs, &found, written.as_ref(), &validation, &findings);
         write_report(folder, &report)?;
     }
-    if code == DONE && !found.unexcited.is_empty() && !asked.accept_unexcited {
+    if let (Some(out), Some(written)) = (&asked.out, &written) {
+        let read = [Some(file), asked.options.as_deref()].into_iter().flatten().chain(asked.logs.iter().map(PathBuf::as_path));
+        let wrote = output::write_other(read.map(|path| (path, "read by this command")), out, &with_mark_of(file, &written.text));
+        if wrote != DONE {
+            return Err(wrote);
+        }
+        written.notes.iter().for_each(|note| terminal::note(note));
+        code = code.max(terminal::print(&told(out, written)));
+    }
+    if code == DONE && !is_shown {
         terminal::error("the logs do not show all parameters: with `--accept-unexcited` those keep the values of the file");
         return Ok(FAULTY);
     }
     Ok(code)
+}
+
+/// The text with the byte order mark that its file begins with.
+fn with_mark_of(file: &Path, text: &str) -> String {
+    let mut start = [0; 3];
+    let has_mark = File::open(file).and_then(|mut file| file.read_exact(&mut start)).is_ok() && start == *b"\xef\xbb\xbf";
+    format!("{}{text}", if has_mark { "\u{feff}" } else { "" })
+}
+
+/// What was written, and what consistency costs.
+fn told(out: &Path, written: &Written) -> String {
+    let of = &written.consistent;
+    format!(
+        "\n{}: {} new numbers, of bodies with {} digits; every body is positive definite, exactly\n\
+         the sum of squares is {} above its least value\n",
+        out.display(),
+        written.changed,
+        written.digits,
+        percent(of.objective / of.unconstrained - 1.0),
+    )
 }
 
 fn named(path: &Path) -> LogOptions {
@@ -149,16 +197,19 @@ fn in_torques(arm: &Arm, mut log: Log, gains: &[Interval]) -> Result<Log, u8> {
     Ok(log)
 }
 
-/// The arm without load, with the friction of the last session.
-fn model(arm: &Arm, found: &Identified) -> Model {
+/// The arm without load, with the friction of the last session; as it is written, where it is.
+fn model(arm: &Arm, found: &Identified, written: Option<&Written>) -> Model {
     let mut friction = vec![[0.0; 6]; arm.dof()];
     for of in found.friction.iter().filter(|of| of.session + 1 == found.sessions.len()) {
         friction[of.joint][of.term as usize] = of.value.value;
     }
     Model {
-        pi: found.base.iter().map(|base| base.value).collect(),
-        friction,
-        velocities: found.velocities.clone(),
+        pi: match written {
+            Some(written) => written.consistent.base(arm).as_slice().to_vec(),
+            None => found.base.iter().map(|base| base.value).collect(),
+        },
+        friction: written.map_or(friction, |written| written.friction.clone()),
+        velocities: written.map_or_else(|| found.velocities.clone(), |written| written.velocities.clone()),
         delays: Some(found.delays.clone()),
         spreads: Some(found.spreads.clone()),
         covariance: Some(found.covariance.clone()),

@@ -48,8 +48,8 @@ pub(super) const KEYS: [UnitKey; 9] = [
     key("torque", &[Dimension::Torque], "N m", "N m, N mm, N cm, mN m, kgf cm, lbf in"),
 ];
 
-/// Puts every value of the description in its unit.
-pub(super) fn apply(description: &mut RobotDescription, diagnostics: &mut Diagnostics) {
+/// The units of dimensions, those that are not SI units.
+pub(super) fn of(description: &RobotDescription) -> BTreeMap<Dimension, Unit> {
     let mut units: BTreeMap<Dimension, Unit> = BTreeMap::new();
     for named in &description.units {
         let key = KEYS.iter().find(|key| key.name == named.key);
@@ -66,6 +66,12 @@ pub(super) fn apply(description: &mut RobotDescription, diagnostics: &mut Diagno
         units.insert(Dimension::ProductOfInertia, unit.negated());
     }
     units.retain(|_, unit| !unit.is_si());
+    units
+}
+
+/// Puts every value of the description in its unit.
+pub(super) fn apply(description: &mut RobotDescription, diagnostics: &mut Diagnostics) {
+    let units = of(description);
     if units.is_empty() {
         return;
     }

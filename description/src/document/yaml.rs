@@ -25,8 +25,10 @@ const MAX_COPIED: usize = 1 << 20;
 /// A value in the tree.
 #[derive(Clone, Debug)]
 pub struct Node {
-    /// Its place, without the key before it.
+    /// Its place, without the key before it; of a copy by an alias, that of the original.
     pub span: Span,
+    /// Place of the alias that this is a copy by.
+    pub alias: Option<Span>,
     /// Its kind.
     pub kind: Kind,
 }
@@ -54,6 +56,11 @@ pub struct Scalar {
 }
 
 impl Node {
+    /// Where it is written: of a copy by an alias, the place of the alias.
+    pub fn place(&self) -> Span {
+        self.alias.unwrap_or(self.span)
+    }
+
     /// The kind of node, for a message.
     pub fn describe(&self) -> &'static str {
         match &self.kind {
@@ -169,7 +176,8 @@ impl Builder<'_> {
                 Event::Scalar(text, style, anchor, _) => {
                     let plain = style == ScalarStyle::Plain;
                     let verbatim = self.verbatim(&text, span, style);
-                    let node = Node { span, kind: Kind::Scalar(Scalar { text: text.into_owned(), plain, verbatim }) };
+                    let node =
+                        Node { span, alias: None, kind: Kind::Scalar(Scalar { text: text.into_owned(), plain, verbatim }) };
                     self.place(node, anchor)?;
                 }
                 Event::SequenceStart(style, anchor, _) => {
@@ -202,7 +210,7 @@ impl Builder<'_> {
                             ));
                             return None;
                         }
-                        let node = node.clone();
+                        let node = Node { alias: Some(span), ..node.clone() };
                         self.place(node, 0)?;
                     }
                     None => {
@@ -238,17 +246,17 @@ impl Builder<'_> {
         let Open { start, anchor, flow, content } = self.open.pop()?;
         let (kind, last) = match content {
             Content::List(items) => {
-                let last = items.last().map(|n| n.span);
+                let last = items.last().map(Node::place);
                 (Kind::List(items), last)
             }
             Content::Mapping(entries, ..) => {
-                let last = entries.last().map(|(key, value)| key.span.to(value.span));
+                let last = entries.last().map(|(key, value)| key.span.to(value.place()));
                 (Kind::Mapping(entries), last)
             }
         };
         // A block ends with its last value; what the reader calls its end may be lines away.
         let span = if flow { start.to(end) } else { last.map_or(start, |last| Span::new(start.start.min(last.start), last.end)) };
-        self.place(Node { span, kind }, anchor)
+        self.place(Node { span, alias: None, kind }, anchor)
     }
 
     /// Puts a complete node where it belongs.
@@ -291,7 +299,7 @@ impl Builder<'_> {
     fn begin_entry(&mut self, node: Node) {
         let Some(Open { start, content: Content::Mapping(entries, ..), .. }) = self.open.pop() else { return };
         let at = node.span;
-        let (first, end) = (entries[0].0.span, entries.last().map_or(start.end, |(_, value)| value.span.end));
+        let (first, end) = (entries[0].0.span, entries.last().map_or(start.end, |(_, value)| value.place().end));
         let name = match &node.kind {
             Kind::Scalar(scalar) => super::excerpt(&scalar.text),
             _ => String::new(),
@@ -306,7 +314,7 @@ impl Builder<'_> {
             )
             .also(first, "the entry begins here"),
         );
-        let entry = Node { span: Span::new(start.start.min(first.start), end), kind: Kind::Mapping(entries) };
+        let entry = Node { span: Span::new(start.start.min(first.start), end), alias: None, kind: Kind::Mapping(entries) };
         if let Some(Content::List(items)) = self.open.last_mut().map(|open| &mut open.content) {
             items.push(entry);
         }
@@ -423,7 +431,7 @@ fn parted(
     let quoted = quote.and_then(|quote| rest[1..].strip_suffix(quote));
     let (text, verbatim) = (quoted.unwrap_or(rest).to_owned(), span.start + usize::from(quoted.is_some()));
     let scalar = Scalar { text, plain: quoted.is_none(), verbatim: Some(verbatim) };
-    Some((word, Node { span, kind: Kind::Scalar(scalar) }))
+    Some((word, Node { span, alias: None, kind: Kind::Scalar(scalar) }))
 }
 
 /// That a colon, at a place, wants a blank.

@@ -224,7 +224,7 @@ fn plain(text: &str) -> Kind {
 /// One slip of a hand: a lost, misspelt or repeated key or element, or a value of another kind.
 fn slip(node: &mut Node, random: &mut Random) {
     let other = |random: &mut Random| match random.below(4) {
-        0 => Kind::List(vec![Node { span: crate::source::Span::default(), kind: plain("1") }]),
+        0 => Kind::List(vec![Node { span: crate::source::Span::default(), alias: None, kind: plain("1") }]),
         1 => Kind::Mapping(Vec::new()),
         2 => plain("~"),
         _ => plain(random.of(&["true", "on", "0.1.2", "1,5", "5 mm", "2^3", "2 pi", "3*", "-", "(1", "1e400", ".nan", "word"])),
