@@ -37,7 +37,7 @@ fn functions(source: &Source, programs: &[&Program<f64>], report: &mut Report) -
     let mut module = Module::read(&generated.module)?;
     (report.scalar, report.trig) = ("f64".into(), module.trig.unwrap_or_default().into());
     for (name, function) in &mut module.functions {
-        let function = function.as_mut().map_err(|fault| std::mem::take(fault))?;
+        let function = function.as_mut().map_err(std::mem::take)?;
         let own = programs.iter().find(|program| program.name() == name.as_str());
         let own = own.ok_or_else(|| format!("{name}: the emitted module has it, and nothing was executed"))?;
         function.program = read(own, &function.program.outputs).map_err(|fault| format!("{name}: {fault}"))?;

@@ -32,11 +32,11 @@ fn main() {
             let trial = Trial::new(module, &domain, &prepared.checker);
             let mut largest = [(0.0f64, String::new()), (0.0, String::new())];
             for (name, program) in module.programs() {
-                let values = claims.resolve(name, &program.literals, module.real).values;
-                if let Some(unfit) = trial.fault(program, &values) {
+                let values = &claims.resolve(name, &program.literals, module.real).values;
+                if let Some(unfit) = trial.fault(program, values) {
                     println!("{path} {scalar:?}: {name}: {unfit}");
                 }
-                let compared = trial.compared(program, &values);
+                let compared = trial.compared(program, values);
                 if program.outputs.iter().any(|output| !compared.iter().any(|known| known.place == output.place)) {
                     println!("{path} {scalar:?}: {name}: an entry is never judged");
                 }

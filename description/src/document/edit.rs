@@ -125,13 +125,11 @@ fn quoted(text: &str) -> String {
 
 fn in_brackets(text: &str, plain: bool) -> String {
     let simple = |c: char| c.is_alphanumeric() || " _-+*/().".contains(c);
-    if plain && !text.is_empty() && text.chars().all(simple) && text.trim() == text && !text.starts_with(['-', '*']) {
-        text.to_owned()
-    } else if plain
-        && text.starts_with('-')
-        && text[1..].starts_with(|c: char| c.is_alphanumeric() || ".(".contains(c))
-        && text.chars().all(simple)
-    {
+    // A minus before a space would begin an item of a list.
+    let begins = |text: &str| text.starts_with(|c: char| c.is_alphanumeric() || "_+/().".contains(c));
+    let is_negative =
+        text.strip_prefix('-').is_some_and(|rest| rest.starts_with(|c: char| c.is_alphanumeric() || ".(".contains(c)));
+    if plain && (begins(text) || is_negative) && text.chars().all(simple) && text.trim() == text {
         text.to_owned()
     } else {
         quoted(text)
@@ -189,13 +187,13 @@ fn agrees(old: Option<&Node>, new: &Node, changes: &[&Change], depth: usize) -> 
                 Some(Kind::List(old)) => old,
                 _ => &[],
             };
-            let all = new.iter().enumerate();
+            let mut all = new.iter().enumerate();
             let last = changes.iter().filter_map(|change| match change.path.get(depth) {
                 Some(Step::Item(k)) => Some(k + 1),
                 _ => None,
             });
             new.len() == old.len().max(last.max().unwrap_or(0))
-                && all.map(|(k, new)| agrees(old.get(k), new, &under(changes, depth, &Step::Item(k)), depth + 1)).all(|same| same)
+                && all.all(|(k, new)| agrees(old.get(k), new, &under(changes, depth, &Step::Item(k)), depth + 1))
         }
         (Some(Kind::Mapping(_)) | None, Kind::Mapping(new)) => {
             let old: &[_] = match old.map(|old| &old.kind) {
@@ -366,17 +364,10 @@ impl<'s> Editor<'s> {
 
     fn finish(mut self) -> Edited {
         let text = self.source.text();
-        let newline = |end: usize| match text.get(end..end + 2) {
-            Some("\r\n") => "\r\n",
-            Some(rest) if rest.starts_with('\r') => "\r",
-            _ if !text[end..].is_empty() => {
-                if text[end..].starts_with('\r') {
-                    "\r"
-                } else {
-                    "\n"
-                }
-            }
-            _ if text.contains("\r\n") => "\r\n",
+        let newline = |end: usize| match text.get(end..).unwrap_or_default() {
+            "" if text.contains("\r\n") => "\r\n",
+            rest if rest.starts_with("\r\n") => "\r\n",
+            rest if rest.starts_with('\r') => "\r",
             _ => "\n",
         };
         let ours = format!("# {}: ", self.mark);
