@@ -150,8 +150,9 @@ macro_rules! print {
                 }
             }
             let nearest = found.nearest_to(&[0.5; DOF]);
-            let is_nearest = |one| nearest.is_some_and(|nearest| std::ptr::eq(one, nearest));
-            line += &format!(" nearest {:?} within", found.as_slice().iter().position(is_nearest));
+            let nearest = nearest.map(std::ptr::from_ref);
+            let place = found.as_slice().iter().position(|one| nearest == Some(std::ptr::from_ref(one)));
+            line += &format!(" nearest {place:?} within");
             for one in found.within_limits().as_slice() {
                 line += &format!(" {}", one.branch);
                 for x in &one.q {
