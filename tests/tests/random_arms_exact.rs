@@ -131,7 +131,7 @@ fn arms_with_general_angles_alone_equal_their_equations() {
 #[test]
 #[ignore = "wide"]
 fn chains_of_slides_equal_their_equations() {
-    for joints in 1..=12 {
+    for joints in [1, 2, 3, 5, 8, 12] {
         println!("{joints} slides");
         let seed = 100 + joints as u64;
         let text = random::slides(&format!("slides_{joints}"), joints, &mut Random::new(seed));
