@@ -12,12 +12,12 @@ to measure. Without a GPU it runs on the processor, which tests this script; `--
 | `compiled` | `torch.compile(f, fullgraph=True, dynamic=True)` | `jax.jit(f)` |
 | `by_joint` | the same of `robot.by_joint(f)`: arrays by joint | the same of `robot.by_joint(f)` |
 | `by_joint_stacked` | the same, with results stacked along the first axis | the same |
-| `unfused` | `by_joint` without fused multiplications and additions | |
+| `unfused` | `by_joint` without fused multiplications and additions, which has NumPy's bits | |
+| `wide` | `by_joint` with `max_fusion_size` 1024 | |
 | `static` | `by_joint` with `dynamic=False` | |
 | `graphs` | `compiled` with `mode="reduce-overhead"`: for small batches | |
-| `unroll_1`, `last_unroll_1` | | `by_joint`, `compiled` with `xla_gpu_experimental_max_unroll_factor` 1 |
 | `short_sines` | | `by_joint` without the library's sines beyond the range of the module's |
-| `pallas` | | `by_joint` in a kernel of Pallas, by Triton |
+| `option:NAME=VALUE` | | `by_joint` with an option of XLA |
 
 The column `copy` has the states a second of a copy that reads and writes as many bytes. `differ` counts the entries, of 100 000 states, whose bits are not
 those of NumPy, and `largest` has their largest difference, over the largest entry of the result.
@@ -115,20 +115,12 @@ class Torch:
         if self.gpu:
             self.torch.cuda.synchronize()
 
-    def variant(self, module, function, variant, _):
+    def variant(self, module, function, variant):
         torch = self.torch
         options = {"fullgraph": True, "dynamic": variant != "static"}
         if variant == "eager":
             return function
-        if variant == "padded":
-            leave = module._leave
-
-            def padded(xp, like, shape, lengths, entries):
-                more = (0.0,) * max(0, 9 - len(entries))
-                return xp.moveaxis(xp.moveaxis(leave(xp, like, shape, (len(entries + more),), entries + more), -1, 0)[: len(entries)], 0, -1)
-
-            module._leave = padded
-        if variant in ("compiled", "padded"):
+        if variant == "compiled":
             return torch.compile(function, **options)
         if variant == "graphs":
             return torch.compile(function, fullgraph=True, dynamic=False, mode="reduce-overhead")
@@ -205,19 +197,19 @@ class Jax:
     def wait(self, result):
         self.jax.block_until_ready(result)
 
-    def variant(self, module, function, variant, arguments):
+    def variant(self, module, function, variant):
         jax = self.jax
-        options = {"xla_gpu_experimental_max_unroll_factor": 1} if variant.endswith("unroll_1") else None
-        if variant in ("compiled", "last_unroll_1"):
-            return jax.jit(function, compiler_options=options)
+        options = None
+        if variant == "compiled":
+            return jax.jit(function)
         joints = module.by_joint(function)
         if variant == "short_sines":
             module._all = lambda xp, inside: True
         if variant == "by_joint_stacked":
             return jax.jit(lambda *arguments: jax.numpy.stack(flat(joints(*arguments))))
-        if variant == "pallas":
-            return jax.jit(pallas(jax, joints, module, arguments))
-        if variant in ("by_joint", "short_sines", "unroll_1"):
+        if variant.startswith("option:"):
+            options = dict([variant.removeprefix("option:").split("=")])
+        if variant in ("by_joint", "short_sines") or options:
             return jax.jit(joints, compiler_options=options)
         raise ValueError(variant)
 
@@ -257,33 +249,6 @@ class Jax:
         return [(name, *values) for name, values in found.items()]
 
 
-def pallas(jax, joints, module, arguments):
-    from jax.experimental import pallas as pl
-    from jax.experimental.pallas import triton
-
-    states, block = arguments[0].shape[1], 128
-    shape = jax.eval_shape(joints, *arguments)
-    rows = len(flat(shape))
-
-    def kernel(*references):
-        *given, result = references
-        entries = flat(joints(*([reference[i, :] for i in range(reference.shape[0])] for reference in given)))
-        for i, entry in enumerate(entries):
-            result[i, :] = entry
-
-    def spec(length):
-        return pl.BlockSpec((length, block), lambda i: (0, i))
-
-    return pl.pallas_call(
-        kernel,
-        grid=(states // block,),
-        in_specs=[spec(a.shape[0]) for a in arguments],
-        out_specs=spec(rows),
-        out_shape=jax.ShapeDtypeStruct((rows, states), arguments[0].dtype),
-        compiler_params=triton.CompilerParams(num_warps=4),
-    )
-
-
 def wall(library, function, arguments, rounds):
     begin = time.perf_counter()
     for _ in range(rounds):
@@ -316,15 +281,15 @@ def main():
         batches = [int(batch) for batch in getattr(given, library.batches).split(",")]
         if variant == "graphs":
             batches = [batch for batch in batches if batch <= 1024]
-        by_joint = variant not in ("eager", "compiled", "padded", "graphs", "last_unroll_1")
+        by_joint = variant not in ("eager", "compiled", "graphs")
         built, wanted = None, None
         for batch in batches:
-            name = f"{given.library}_{given.robot}_{given.scalar}_{given.function}_{variant}_{batch}"
+            name = re.sub(r"\W+", "_", f"{given.library}_{given.robot}_{given.scalar}_{given.function}_{variant}_{batch}")
             try:
                 arrays = states(module, function, batch)
                 arguments = [library.put(np.ascontiguousarray(array.T) if by_joint else array) for array in arrays]
                 if built is None or given.library == "jax" or variant in ("static", "graphs"):
-                    built = library.variant(module, function, variant, arguments)
+                    built = library.variant(module, function, variant)
                     if variant == "eager":
                         seconds, kernels = 0.0, 0
                     else:
