@@ -121,6 +121,11 @@ def _leave(xp: Any, like: Any, shape: tuple[int, ...], lengths: tuple[int, ...],
         return _rows(lengths, [xp.reshape(array, shape) for array in arrays])
     if not arrays:
         return xp.reshape(like.array[:0, ...], shape + lengths)
+    if xp.__name__ == "jax.numpy":
+        import jax
+
+        # XLA would fuse the stack with all before it, and compute that for each entry again.
+        arrays = jax.lax.optimization_barrier(arrays)
     result = xp.reshape(xp.stack(arrays), lengths + shape)
     return xp.moveaxis(result, tuple(range(len(lengths))), tuple(range(-len(lengths), 0))) if lengths and shape else result
 
