@@ -25,7 +25,7 @@ use armgen_codegen::emit::Language;
 use armgen_codegen::pass::Pass;
 use armgen_codegen::show::Form;
 use armgen_codegen::source::Source;
-use armgen_terminal::{self as terminal, output, table, DONE, FAULTY, UNREADABLE};
+use armgen_terminal::{self as terminal, number, output, table, DONE, FAULTY, UNREADABLE};
 use clap::builder::styling::{AnsiColor, Styles};
 use clap::builder::{PossibleValuesParser, TypedValueParser};
 use clap::error::ErrorKind;
