@@ -17,6 +17,8 @@ mod companions;
 mod file_names;
 mod hints;
 mod input;
+#[cfg(test)]
+mod pages;
 
 use std::ffi::OsString;
 use std::path::PathBuf;
