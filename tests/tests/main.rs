@@ -7,6 +7,7 @@ mod embedding;
 mod emission;
 mod emitted;
 mod exported_arms;
+mod fuzzed;
 mod general_angles;
 mod gravity;
 mod hostile_files;

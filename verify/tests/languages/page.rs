@@ -527,7 +527,7 @@ pub(crate) fn check_tests(name: &str, scalar: Scalar, language: Language) {
         Language::JavaScript => there("node", "nodejs"),
         Language::Python => python.is_some(),
         Language::Matlab => there("octave-cli", "octave"),
-        Language::Rust => false,
+        Language::Rust | Language::Cuda => false,
     };
     if !there {
         return;
@@ -576,7 +576,7 @@ pub(crate) fn check_tests(name: &str, scalar: Scalar, language: Language) {
                 octave.args(["--no-init-file", "--eval", "robotTest"]);
                 octave
             }
-            Language::Rust => unreachable!("it has a test of its own"),
+            Language::Rust | Language::Cuda => unreachable!("it has a test of its own"),
         };
         let output = command.current_dir(&folder).output().expect("it runs");
         let said = format!("{}{}", String::from_utf8_lossy(&output.stdout), String::from_utf8_lossy(&output.stderr));
