@@ -278,6 +278,24 @@ fn torch_has_the_bits_of_numpy_and_its_derivatives() {
 
 #[test]
 #[ignore = "wide"]
+fn torch_compiles_functions_whole() {
+    page::check_torch_compile();
+}
+
+#[test]
+#[ignore = "wide"]
+fn jax_compiles_and_differentiates_functions() {
+    page::check_jax_jit();
+}
+
+#[test]
+#[ignore = "wide"]
+fn functions_by_joint_have_the_bits_of_numpy() {
+    page::check_by_joint();
+}
+
+#[test]
+#[ignore = "wide"]
 fn the_test_file_of_each_language_passes_and_finds_a_planted_error() {
     for language in others() {
         page::check_tests("scara", Scalar::F64, language);
