@@ -1,8 +1,5 @@
 //! Headers for CUDA and HIP: compilers take them without a warning, and fuse nothing where they are told not to. No GPU is needed.
 
-#[path = "../../tests/src/installed.rs"]
-mod installed;
-
 use std::fmt::Write;
 use std::path::{Path, PathBuf};
 use std::process::Command;
@@ -11,6 +8,8 @@ use armgen_codegen::emit::Language;
 use armgen_codegen::schedule::Options;
 use armgen_codegen::source::Source;
 use armgen_codegen::{generate, Generated, Scalar, Trig};
+
+use crate::inverse_kinematics::installed;
 
 fn workspace() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("..")

@@ -70,7 +70,7 @@ fn fuzz(run: fn(&[u8]), folders: &[&str], count: usize) {
 #[test]
 #[ignore = "wide"]
 fn robots() {
-    fuzz(fuzz::robot::run, &["corpus/robot", "../../robots", "../robots", "../bad"], 1000);
+    fuzz(fuzz::robot::run, &["corpus/robot", "../../robots", "../robots", "../bad"], 1500);
 }
 
 #[test]
@@ -78,7 +78,7 @@ fn robots() {
 fn experiments() {
     let folders =
         ["corpus/experiment", "../../experiments", "../../experiments/paths", "../bad/experiments", "../bad/experiments/paths"];
-    fuzz(fuzz::experiment::run, &folders, 1000);
+    fuzz(fuzz::experiment::run, &folders, 4000);
 }
 
 #[test]
@@ -89,21 +89,21 @@ fn expressions() {
 #[test]
 #[ignore = "wide"]
 fn modules() {
-    fuzz(fuzz::module::run, &["corpus/module"], 200);
+    fuzz(fuzz::module::run, &["corpus/module"], 800);
 }
 
 #[test]
 #[ignore = "wide"]
 fn urdf_files() {
     let folders = ["corpus/urdf", "../../import/tests/bad", "../../import/tests/urdf"];
-    fuzz(|data| fuzz::check_import("robot.urdf", data), &folders, 1000);
+    fuzz(|data| fuzz::check_import("robot.urdf", data), &folders, 4000);
 }
 
 #[test]
 #[ignore = "wide"]
 fn mjcf_files() {
     let folders = ["corpus/mjcf", "../../import/tests/bad", "../../import/tests/mjcf"];
-    fuzz(|data| fuzz::check_import("robot.xml", data), &folders, 1000);
+    fuzz(|data| fuzz::check_import("robot.xml", data), &folders, 4000);
 }
 
 #[test]

@@ -19,7 +19,7 @@ fn is_short(sampling: &Sampling) -> bool {
     sampling.duration.as_nanos() / sampling.period.as_nanos() <= SAMPLES
 }
 
-fn run(experiment: &Experiment, arm: &dyn Arm) {
+fn simulate(experiment: &Experiment, arm: &dyn Arm) {
     let short = match &experiment.body {
         Body::Postures(_) => true,
         Body::Path(sampling) => is_short(sampling),
@@ -49,7 +49,7 @@ pub fn run(data: &[u8]) {
     }
     let arm = armgen_experiments::instance!(armgen_generated);
     match read::experiment(Path::new("fuzzed.yaml"), &Source::new("fuzzed.yaml", text), arm.robot(), &|_| Ok(PATH.to_owned())) {
-        Parsed::Experiment(experiment) => run(&experiment, &arm),
+        Parsed::Experiment(experiment) => simulate(&experiment, &arm),
         Parsed::OtherRobot(_) | Parsed::Path => {}
         Parsed::Faulty(faulty) => {
             assert!(!faulty.is_empty());
