@@ -155,8 +155,9 @@ pub(super) fn lines_of_lanes(module: &Module, function: &Function) -> (Vec<Token
     } else {
         vec![quote!(let mut angles = [#(#first),*];), quote!(for k in 0..LANES { #(#added)* })]
     };
-    before.push(quote!(let (mut sines, mut cosines) = ([[0.0; LANES]; #count], [[0.0; LANES]; #count]);));
-    before.push(quote!(sin_cos_lanes(&angles, &mut sines, &mut cosines);));
+    before.push(quote!(let mut waves = Aligned([[[0.0; LANES]; #count]; 2]);));
+    before.push(quote!(let [sines, cosines] = &mut waves.0;));
+    before.push(quote!(sin_cos_lanes(&angles, sines, cosines);));
     (before, inside)
 }
 
@@ -188,6 +189,10 @@ pub(super) fn of_lanes(module: &Module) -> TokenStream {
         }
     });
     quote! {
+        /// Begins with a line of the cache, as does then the stack of a function that holds it: no vector there lies in two lines.
+        #[repr(align(64))]
+        struct Aligned<T>(T);
+
         /// Sines and cosines of angles of each state, rad.
         #[allow(clippy::all)]
         #[inline(never)]
