@@ -160,7 +160,7 @@ import robot
 jax.config.update("jax_enable_x64", True)
 zeros = jax.numpy.zeros((1000, 7))
 taken = {}
-for name in sys.argv[2:] or [name for name in robot.__all__ if inspect.isfunction(getattr(robot, name))]:
+for name in sys.argv[2:] or [name for name in robot.__all__ if inspect.isfunction(getattr(robot, name)) and name != "by_joint"]:
     function = getattr(robot, name)
     names = inspect.signature(function).parameters
     arguments = [jax.numpy.asarray(robot.NOMINAL_PARAMETERS) if name == "pi" else zeros for name in names]

@@ -21,7 +21,7 @@ const fn of(language: Language, file: [&'static str; 2], with: [&'static str; 2]
 }
 
 /// The longest names first, where one ends like another.
-const COMPANIONS: [Companion; 19] = [
+const COMPANIONS: [Companion; 20] = [
     of(Language::Rust, ["", "_ik_c.rs"], ["", "_ik.rs"], "--c-abi --ik"),
     of(Language::Rust, ["", "_ik.h"], ["", "_ik.rs"], "--c-abi --ik"),
     of(Language::Rust, ["", "_ik.rs"], ["", ".rs"], "--ik"),
@@ -33,6 +33,7 @@ const COMPANIONS: [Companion; 19] = [
     of(Language::C, ["", "_ik_test.c"], ["", "_ik.h"], "--tests --ik"),
     of(Language::C, ["", "_test.c"], ["", ".h"], "--tests"),
     of(Language::C, ["", "_ik.h"], ["", ".h"], "--ik"),
+    of(Language::Cuda, ["", "_ik.h"], ["", ".cuh"], "--ik"),
     of(Language::JavaScript, ["", ".test.mjs"], ["", ".mjs"], "--tests"),
     of(Language::JavaScript, ["", ".test.js"], ["", ".js"], "--tests"),
     of(Language::JavaScript, ["", ".d.mts"], ["", ".mjs"], ""),

@@ -106,7 +106,7 @@ pub(crate) fn unfit(language: Language, out: &Path) -> Option<String> {
         }
         let taken = match language {
             // A text to be included may be called as its reader likes.
-            Language::Rust | Language::C | Language::Matlab => None,
+            Language::Rust | Language::C | Language::Cuda | Language::Matlab => None,
             Language::JavaScript => Some("Node takes a module with `export` from .mjs, or .js"),
             Language::Python => Some("`import` looks for .py"),
         };
@@ -115,7 +115,7 @@ pub(crate) fn unfit(language: Language, out: &Path) -> Option<String> {
         }
     }
     match language {
-        Language::Rust | Language::JavaScript => None,
+        Language::Rust | Language::Cuda | Language::JavaScript => None,
         Language::C => (INCLUDED.contains(&stem.as_str()) && name == format!("{stem}.h"))
             .then(|| format!("{shown} would be found in place of <{stem}.h> of the C library: {}", instead("robot"))),
         Language::Python if PYTHON.contains(&stem.as_str()) => {

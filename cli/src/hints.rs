@@ -16,7 +16,7 @@ pub(crate) fn of(arguments: &[String]) -> Option<String> {
         (_, "yaml" | "yml") => {
             return Some(format!("say what to do with the file: `armgen check {command}`, `armgen show {command}`, `armgen page {command}`"))
         }
-        (_, "rs" | "h" | "mjs" | "py" | "m") => {
+        (_, "rs" | "h" | "cuh" | "mjs" | "py" | "m") => {
             return Some(format!("say what to do with the file: `armgen verify robot.yaml {command}` compares it with its description"))
         }
         (_, "urdf" | "xml" | "mjcf" | "xacro" | "sdf") => return Some(format!("make a description of the file first: `armgen import {command} --out robot.yaml`")),
@@ -33,6 +33,7 @@ pub(crate) fn of(arguments: &[String]) -> Option<String> {
         let names: Vec<&str> = Language::ALL.map(Language::name).to_vec();
         let instead = match language.to_lowercase().as_str() {
             "c++" | "cpp" | "cxx" => "; C++ includes the header that `--language c` writes",
+            "hip" | "gpu" | "cu" | "cuh" => "; `--language cuda` writes a header for CUDA and HIP",
             "js" | "typescript" | "ts" => "; `--language javascript` writes a module for both",
             "octave" | "m" => "; `--language matlab` writes a package for both",
             "py" | "numpy" | "jax" | "torch" => "; `--language python` takes arrays of NumPy, JAX and others",

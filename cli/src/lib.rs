@@ -17,6 +17,8 @@ mod companions;
 mod file_names;
 mod hints;
 mod input;
+#[cfg(test)]
+mod pages;
 
 use std::ffi::OsString;
 use std::path::PathBuf;
@@ -25,7 +27,7 @@ use armgen_codegen::emit::Language;
 use armgen_codegen::pass::Pass;
 use armgen_codegen::show::Form;
 use armgen_codegen::source::Source;
-use armgen_terminal::{self as terminal, output, table, DONE, FAULTY, UNREADABLE};
+use armgen_terminal::{self as terminal, number, output, table, DONE, FAULTY, UNREADABLE};
 use clap::builder::styling::{AnsiColor, Styles};
 use clap::builder::{PossibleValuesParser, TypedValueParser};
 use clap::error::ErrorKind;

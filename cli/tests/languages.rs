@@ -33,6 +33,7 @@ fn every_language_is_written_and_verified() {
     let folder = folder("languages");
     for (language, out, beside) in [
         ("c", "scara.h", vec![]),
+        ("cuda", "scara.cuh", vec![]),
         ("javascript", "scara.mjs", vec!["scara.d.mts"]),
         ("python", "scara.py", vec![]),
         ("matlab", "+scara", vec!["+scara/Contents.m", "+scara/model.m", "+scara/inverseDynamicsWith.m"]),
@@ -101,6 +102,9 @@ fn what_a_language_lacks_is_refused_with_a_way_out() {
             vec!["--language", "javascript", "--fma"],
             "--fma does not go with `--language javascript`: a fused operation is written in Rust and C",
         ),
+        (vec!["--language", "cuda", "--tests", "--out", "robot.cuh"], "`--language c` writes the same functions with one"),
+        (vec!["--language", "cuda", "--batch", "8"], "CUDA has kernels"),
+        (vec!["--language", "cuda", "--out", "robot.h"], "write `--language c` or `--out robot.cuh`"),
         (vec!["--language", "python", "--fma"], "--fma does not go with `--language python`"),
         (vec!["--language", "matlab", "--fma", "--out", "+robot"], "--fma does not go with `--language matlab`"),
         (vec!["--language", "javascript", "--batch", "8"], "--batch does not go with `--language javascript`"),

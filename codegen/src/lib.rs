@@ -121,7 +121,7 @@ impl Generated {
     pub fn in_language(&self, language: Language) -> String {
         match language {
             Language::Rust => self.module.clone(),
-            Language::C => emit::c::standalone(&self.program, &self.origin, &self.notes),
+            Language::C | Language::Cuda => emit::c::standalone(&self.program, language, &self.origin, &self.notes),
             Language::JavaScript => emit::javascript::print(&self.program.unfused(), &self.origin, &self.notes),
             Language::Python => emit::python::print(&self.program.unfused(), &self.origin, &self.notes),
             Language::Matlab => emit::matlab::joined(&self.package()),

@@ -36,7 +36,7 @@ impl Trig {
     pub fn of_language(language: Language) -> Trig {
         match language {
             Language::Rust => Trig::Libm,
-            Language::C | Language::JavaScript | Language::Python | Language::Matlab => Trig::Fast,
+            _ => Trig::Fast,
         }
     }
 

@@ -5,7 +5,7 @@ mod arms;
 #[path = "inverse_kinematics/in_c.rs"]
 mod in_c;
 #[path = "../../tests/src/installed.rs"]
-mod installed;
+pub(crate) mod installed;
 #[path = "inverse_kinematics/project.rs"]
 mod project;
 

@@ -1,7 +1,7 @@
 //! Stops, overrides and resumes: every sample keeps the limits by dynamics written apart, and the end is always reached.
 
 use crate::common::chain::{self, Chain, PANDA_LIMITS, SCARA_LIMITS, UR5_LIMITS};
-use crate::timing::{random, random_path, with_timing};
+use crate::timing::{line, one_joint, random, random_path, with_timing};
 use armgen_runtime::timing::{Command, Ends, Governed, Governor, Limits, Phase, Timing};
 use std::time::Duration;
 
@@ -101,6 +101,39 @@ fn few_random_commands_keep_all_limits() {
 #[ignore = "wide"]
 fn random_commands_keep_all_limits() {
     tables(20);
+}
+
+/// A pendulum of 9.81 N m at 90 degrees with a motor of 8 N m passes there only with enough speed, and rests nowhere near.
+#[test]
+fn commands_leave_the_speed_that_an_arm_needs() {
+    let pendulum = one_joint(false, [0.0; 2], [9.81, 0.0, 0.0], 1.0);
+    let (bounds, path) = (([20.0], [8.0]), line(1.0, [0.0], [3.0]));
+    with_timing(&pendulum, &path, &limits(bounds), Ends::at_rest(), 1e-3, 1000, |timing| {
+        let timing = timing.expect("a timing");
+        let mut storage = vec![[0.0; 2]; timing.segments()];
+        for command in [Command::Stop, Command::Override(0.05), Command::Override(0.5)] {
+            let mut gone_on = false;
+            for begin in 1..40 {
+                let mut governor = Governor::new(&timing, &mut storage).expect("an interval for each segment");
+                governor.advance(timing.duration() * begin / 40, Command::Override(1.0));
+                for sample in 0..20_000 {
+                    let at = governor.advance(Duration::from_millis(1), command);
+                    let most = share(&pendulum, bounds, &at);
+                    assert!(most <= 1.0 + 1e-9, "sample {sample} at {at:?} under {command:?}: {most}");
+                    gone_on |= at.phase == Phase::GoingOn;
+                    if matches!(at.phase, Phase::Held | Phase::Ended) {
+                        break;
+                    }
+                    assert!(sample < 19_999, "neither at rest nor at the end: {at:?}");
+                }
+            }
+            assert_eq!(gone_on, command == Command::Stop, "{command:?}");
+        }
+        let mut next = random(9);
+        for _ in 0..10 {
+            governed(&pendulum, bounds, &timing, &mut next);
+        }
+    });
 }
 
 #[test]

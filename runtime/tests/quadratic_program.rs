@@ -216,10 +216,10 @@ fn random_programs_by_their_residual() {
 #[test]
 #[ignore = "wide"]
 fn many_random_programs_by_their_residual() {
-    // A seed with a hard program: the worst of its 7 x 28 is left at 6.4e-8, the worst of its 7 x 14 at 7e-16.
+    // A seed with a hard program: without a second look at refined rows the worst of its 7 x 28 is left at 6.4e-8.
     let seed = 1_795_797_807_798_836_325;
-    for ((residual, steps), most) in [(random::<7, 14>(50_000, seed), 1e-14), (random::<7, 28>(50_000, seed + 1), 1e-7)] {
-        assert!(residual < most && steps < 60, "{residual} {steps}");
+    for (residual, steps) in [random::<7, 14>(50_000, seed), random::<7, 28>(50_000, seed + 1)] {
+        assert!(residual < 1e-14 && steps < 60, "{residual} {steps}");
     }
 }
 

@@ -90,17 +90,15 @@ fn worst<const N: usize>(
     let mut worst = 0.0f64;
     for i in 0..timing.segments() {
         let p = timing.profile(i).expect("a segment");
-        let middle = 0.5 * (p.x[0] + p.x[1]) + p.k;
         let ([low, high], slack) = (p.interval, 1e-9 * p.bound);
         assert!((low - slack..=high + slack).contains(&p.x[0]), "segment {i}: {} outside of {low} to {high}", p.x[0]);
         for place in 0..=places {
             let t = place as f64 / places as f64;
             // Inside: at the ends the sign of a rate may be that of the neighbour.
             let t = 1e-12 + (1.0 - 2e-12) * t;
-            let x = p.x[0] * (1.0 - t) * (1.0 - t) + 2.0 * middle * t * (1.0 - t) + p.x[1] * t * t;
-            let u = ((middle - p.x[0]) * (1.0 - t) + (p.x[1] - middle) * t) / p.length;
-            assert!(x >= 0.0, "x = {x} at {t} of segment {i}");
-            let at = timing.reference(&Progress { s: p.start + t * p.length, ds: x.sqrt(), dds: u });
+            let progress = timing.at(i, t).expect("a segment");
+            assert!(progress.ds > 0.0, "at rest at {t} of segment {i}");
+            let at = timing.reference(&progress);
             let tau = chain.torque_with_friction(&at.q, &at.dq, &at.ddq);
             for j in 0..N {
                 worst =
@@ -180,7 +178,7 @@ fn random_paths_are_timed_to_a_thousandth() {
 }
 
 /// An arm of one joint, and the path from 0 to `length` in one piece.
-fn one_joint(slides: bool, friction: [f64; 2], gravity: [f64; 3], mass: f64) -> Chain<1> {
+pub(crate) fn one_joint(slides: bool, friction: [f64; 2], gravity: [f64; 3], mass: f64) -> Chain<1> {
     let friction = JointFriction { viscous: friction[0], coulomb: friction[1], ..JointFriction::default() };
     let a = if slides { 0.0 } else { 1.0 };
     let row = chain::Row {
@@ -198,7 +196,7 @@ fn one_joint(slides: bool, friction: [f64; 2], gravity: [f64; 3], mass: f64) -> 
     Chain::new([row], gravity)
 }
 
-fn line<const N: usize>(length: f64, from: [f64; N], to: [f64; N]) -> JointPath<f64, N, Vec<Piece<f64, N>>> {
+pub(crate) fn line<const N: usize>(length: f64, from: [f64; N], to: [f64; N]) -> JointPath<f64, N, Vec<Piece<f64, N>>> {
     JointPath::new(vec![Piece::line(0.0, length, from, to)]).expect("a line")
 }
 

@@ -3,10 +3,12 @@
 mod bad_files;
 mod batches;
 mod c_face;
+mod carried_arms;
 mod embedding;
 mod emission;
 mod emitted;
 mod exported_arms;
+mod fuzzed;
 mod general_angles;
 mod gravity;
 mod hostile_files;

@@ -120,7 +120,7 @@ impl Module {
         let ModuleText { language, text } = text.into();
         let module = match language {
             Language::Rust => Module::read_rust(text),
-            Language::C => c::read(text),
+            Language::C | Language::Cuda => c::read(text, language),
             Language::JavaScript => javascript::read(text),
             Language::Python => python::read(text),
             Language::Matlab => matlab::read(text),

@@ -78,6 +78,35 @@ fn other_languages_do_the_operations_of_rust_in_its_order() {
     check_read("base_set", Scalar::F32);
 }
 
+/// The kernels of CUDA follow from the functions, so each change of theirs is refused, and so is a header without them.
+#[test]
+#[ignore = "wide"]
+fn changed_kernels_are_refused() {
+    let generated = generated(&common::source("scara4"), Scalar::F64, Trig::Fast);
+    let read = |language, text: &str| Module::read(ModuleText { language, text }).map(|module| module.functions.len());
+    let text = generated.in_language(Language::Cuda);
+    let functions = read(Language::C, &generated.in_language(Language::C)).expect("the header");
+    assert_eq!(read(Language::Cuda, &text).expect("header and kernels"), functions);
+    assert_eq!(text.matches("_status scara4_launch_").count(), functions);
+    for (from, to) in [
+        ("scara4_take(SCARA4_DOF, state, leading, dq, one_dq)", "scara4_take(SCARA4_DOF, state, leading, q, one_dq)"),
+        ("scara4_gravity(one_q, one_result)", "scara4_viscous_friction(one_q, one_result)"),
+        ("one_result[0] = scara4_kinetic_energy(", "one_result[0] = -scara4_kinetic_energy("),
+        ("scara4_give(16, state", "scara4_give(15, state"),
+        ("to[i] = from[first + (size_t)i * step]", "to[i] = from[first + (size_t)i]"),
+        ("state < states;", "state <= states;"),
+        ("threads, 0, stream>>>(states, leading, q, result)", "threads, 0, stream>>>(states, states, q, result)"),
+    ] {
+        assert!(text.contains(from), "{from}");
+        assert!(read(Language::Cuda, &text.replacen(from, to, 1)).is_err(), "{to}");
+    }
+    let at = text.find("template <int threads>").expect("a kernel");
+    let next = at + 1 + text[at + 1..].find("template <int threads>").expect("another");
+    assert!(read(Language::Cuda, &(text[..at].to_owned() + &text[next..])).is_err(), "a kernel is missing");
+    assert!(read(Language::Cuda, &generated.in_language(Language::C)).is_err());
+    assert!(read(Language::C, &text).is_err());
+}
+
 fn fused(name: &str, scalar: Scalar) -> Generated {
     common::generate_with(&common::source(name), &Options { scalar, trig: Trig::Fast, fuse: true, ..Options::default() })
 }
@@ -92,7 +121,7 @@ fn fused_operations_are_those_of_rust() {
         let report = armgen_certify::certify_in(&common::source("scara4"), &fused, Language::C);
         assert_eq!(report.first_fault(), None);
         let plain = generated(&common::source("scara4"), scalar, Trig::Fast);
-        for language in others().filter(|language| *language != Language::C && language.scalars().contains(&scalar)) {
+        for language in others().filter(|language| !language.is_c() && language.scalars().contains(&scalar)) {
             assert_eq!(fused.in_language(language), plain.in_language(language));
         }
         assert_eq!([fused.native().c, fused.native().python], [plain.native().c, plain.native().python]);
@@ -245,6 +274,24 @@ fn entries_of_another_type_are_told_what_is_taken() {
 #[ignore = "wide"]
 fn torch_has_the_bits_of_numpy_and_its_derivatives() {
     page::check_torch();
+}
+
+#[test]
+#[ignore = "wide"]
+fn torch_compiles_functions_whole() {
+    page::check_torch_compile();
+}
+
+#[test]
+#[ignore = "wide"]
+fn jax_compiles_and_differentiates_functions() {
+    page::check_jax_jit();
+}
+
+#[test]
+#[ignore = "wide"]
+fn functions_by_joint_have_the_bits_of_numpy() {
+    page::check_by_joint();
 }
 
 #[test]

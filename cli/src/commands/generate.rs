@@ -354,13 +354,14 @@ fn unfit(
         (beside.bounds, "--bounds", "its companion is Rust"),
         (beside.runtime, "--runtime", "the runtime is Rust"),
         (beside.c_abi, "--c-abi", "it is the face for C of a module in Rust"),
-        (beside.ik && language != Language::C, "--ik", "inverse kinematics is written in Rust and in C"),
+        (beside.ik && !language.is_c(), "--ik", "inverse kinematics is written in Rust and in C"),
+        (beside.tests && language == Language::Cuda, "--tests", "a test needs no GPU: `--language c` writes the same functions with one"),
         (
             choices.batch.is_some() && language != Language::C,
             "--batch",
-            "functions for many states are written for Rust and C; JavaScript calls one after the other, the others take arrays of states",
+            "functions for many states are written for Rust and C; JavaScript calls one after the other, CUDA has kernels, the others take arrays of states",
         ),
-        (choices.fma && language != Language::C, "--fma", "a fused operation is written in Rust and C"),
+        (choices.fma && !language.is_c(), "--fma", "a fused operation is written in Rust and C"),
         (trig == Trig::Libm, "--trig libm", "the crate libm is Rust's: take `--trig fast` or `--trig std`"),
     ];
     if let Some((_, flag, why)) = only_rust.iter().find(|(asked, ..)| *asked) {
@@ -463,7 +464,7 @@ impl Requested<'_> {
         let package = stem.trim_start_matches('+');
         let (file, taken_in) = match language {
             Language::Rust => (format!("{stem}_test.rs"), format!("#[path = {name:?}]\nmod robot;")),
-            Language::C => (format!("{stem}_test.c"), name.to_string()),
+            Language::C | Language::Cuda => (format!("{stem}_test.c"), name.to_string()),
             Language::JavaScript => (format!("{stem}.test.{extension}"), name.to_string()),
             Language::Python => (format!("test_{stem}.py"), stem.clone()),
             Language::Matlab => (format!("{package}Test.m"), package.to_owned()),
@@ -491,7 +492,7 @@ impl Requested<'_> {
     /// The module of inverse kinematics, and its certificate on request.
     fn inverse_kinematics(&self) -> Result<Vec<Output>, String> {
         let (file, text) = match self.language {
-            Language::C => self.file("_ik.h", self.generated.inverse_kinematics_in_c()?),
+            Language::C | Language::Cuda => self.file("_ik.h", self.generated.inverse_kinematics_in_c()?),
             _ => self.file("_ik.rs", self.generated.inverse_kinematics()),
         };
         let mut files = Vec::new();

@@ -19,7 +19,7 @@ use serde_json::json;
 
 use super::verify::with_spinner;
 use crate::table::{Align, Table};
-use crate::{input, output, terminal, DONE, FAULTY, UNREADABLE};
+use crate::{input, number, output, terminal, DONE, FAULTY, UNREADABLE};
 
 /// What is asked for.
 pub(crate) struct Asked {
@@ -253,13 +253,8 @@ fn write_report(folder: &Path, report: &serde_json::Value) -> Result<(), u8> {
     })
 }
 
-/// So many significant digits.
 fn short(x: f64) -> String {
-    if x == 0.0 {
-        return "0".into();
-    }
-    let digits = (3 - x.abs().log10().floor() as i32).clamp(0, 9) as usize;
-    format!("{x:.digits$}")
+    number::short(x, 4)
 }
 
 fn percent(x: f64) -> String {

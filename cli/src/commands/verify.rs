@@ -175,14 +175,14 @@ fn line_of(module: &str, fault: &str, language: Language) -> Option<usize> {
     };
     let (words, before): (&[&str], &str) = match language {
         Language::Rust => (&["pub fn ", "pub const "], ""),
-        Language::C => (&["static inline ", "#define "], "_"),
+        Language::C | Language::Cuda => (&["static inline ", "#define "], "_"),
         Language::JavaScript => (&["export function ", "export const "], ""),
         Language::Python => (&[if is_constant { "" } else { "def " }], ""),
         Language::Matlab => (&["function ", "    m."], ""),
     };
     // In C and in MATLAB a type or a result stands in between.
     let stands = |line: &str| match language {
-        Language::C | Language::Matlab => line.find(&format!("{before}{name}")),
+        Language::C | Language::Cuda | Language::Matlab => line.find(&format!("{before}{name}")),
         _ => Some(0),
     };
     let begins = |line: &str| {

@@ -3,6 +3,7 @@
 //! Only terminals get colours. A reader may close the pipe early.
 
 pub mod input;
+pub mod number;
 pub mod output;
 pub mod table;
 

@@ -8,6 +8,7 @@ mod bindings;
 mod from_rust;
 mod header;
 mod inverse_kinematics;
+mod kernels;
 mod solver;
 mod standalone;
 mod syntax;
@@ -17,7 +18,7 @@ use self::header::macro_of;
 pub use self::header::{base_parameters_comment, function_comment, parameters_comment};
 pub use self::inverse_kinematics::print_inverse_kinematics;
 pub use self::solver::{print as print_solver, print_test as print_solver_test};
-use super::{Notes, Origin};
+use super::{Language, Notes, Origin};
 use crate::catalogue::Quantity;
 use crate::program::Module;
 
@@ -35,9 +36,9 @@ pub fn print(module: &Module, origin: &Origin) -> CFace {
     CFace { header: header::header(module, origin), wrappers: bindings::wrappers(module, origin) }
 }
 
-/// The module in C alone: a header of functions that needs at most `math.h`.
-pub fn standalone(module: &Module, origin: &Origin, notes: &Notes) -> String {
-    standalone::print(module, origin, notes)
+/// The module in C alone: a header of functions that needs at most `math.h`; in CUDA with kernels, too.
+pub fn standalone(module: &Module, language: Language, origin: &Origin, notes: &Notes) -> String {
+    standalone::print(module, language, origin, notes)
 }
 
 /// The functions for many states as the source of a library, each exported as `armgen_` and its name.

@@ -53,7 +53,7 @@ pub fn print(module: &Module, origin: &Origin, notes: &Notes) -> String {
     let public: Vec<String> = constants(module, 0)
         .iter()
         .map(|constant| constant.name.to_string())
-        .chain(["DTYPE".into()])
+        .chain(["DTYPE".into(), "by_joint".into()])
         .chain(module.functions.iter().filter_map(|function| structure(function.quantity)))
         .chain(module.functions.iter().map(Function::name))
         .collect();

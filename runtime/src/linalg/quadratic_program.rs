@@ -17,6 +17,9 @@ use nalgebra::{RealField, SMatrix, SVector};
 /// Rows added and removed, after which a program is given up; of random programs with 8 unknowns and 36 rows the worst takes 50.
 const MOST_STEPS: u32 = 120;
 
+/// Refinements of x at most, each with new active rows.
+const MOST_ROUNDS: usize = 3;
+
 /// An optimum.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Optimum<T, const N: usize, const R: usize> {
@@ -200,8 +203,10 @@ struct Program<'a, T, const N: usize, const R: usize> {
     g: &'a SVector<T, N>,
     rows: &'a SMatrix<T, R, N>,
     bounds: &'a SVector<T, R>,
-    /// The size of x: its largest element, now or at the unconstrained optimum.
+    /// The size of x: its largest element since it was refined last.
     size: T,
+    /// The largest element of x on its whole way, the unconstrained optimum included.
+    largest: T,
 }
 
 impl<T: RealField + Copy, const N: usize, const R: usize> Program<'_, T, N, R> {
@@ -278,9 +283,14 @@ impl<T: RealField + Copy, const N: usize, const R: usize> Program<'_, T, N, R> {
         }
     }
 
-    /// `x` with its residual. Where x is small beside the unconstrained optimum, roundings of the latter remain in it.
+    /// The size of a refined `x`. Where it is small beside the unconstrained optimum, roundings of the latter remain in it.
+    fn shrink(&mut self, x: &SVector<T, N>) {
+        self.size = x.amax().max(self.largest * tolerance::<T>().sqrt());
+    }
+
+    /// `x` with its residual.
     fn optimum(mut self, x: SVector<T, N>, active: &Active<T, N>, steps: u32) -> Optimum<T, N, R> {
-        self.size = x.amax().max(self.size * tolerance::<T>().sqrt());
+        self.shrink(&x);
         let (mut multipliers, mut is_active) = (SVector::<T, R>::zeros(), [false; R]);
         let mut size = self.g.amax();
         for k in 0..N {
@@ -338,84 +348,92 @@ pub fn quadratic_program<T: RealField + Copy, const N: usize, const R: usize>(
     if !(is_finite(&x) && is_finite(&j)) {
         return Err(NoOptimum::NotFinite);
     }
-    let mut program = Program { h, g, rows, bounds, size: x.amax() };
+    let mut program = Program { h, g, rows, bounds, size: x.amax(), largest: x.amax() };
     let mut active = Active { j, r: SMatrix::zeros(), rows: [0; N], multipliers: SVector::zeros(), count: 0 };
     // Rows that repeat active ones to rounding.
     let mut left_out = [false; R];
     let mut steps = 0;
-    while let Some(row) = program.most_violated(&x, &left_out) {
-        let c = program.row(row);
-        let mut multiplier = T::zero();
-        loop {
-            if steps >= MOST_STEPS {
-                return Err(NoOptimum::Limit { last: program.optimum(x, &active, steps) });
-            }
-            let d = active.j.tr_mul(&c);
-            // The step z of x, beside the active rows, and the rates at which their multipliers fall.
-            let mut beside = d;
-            for k in 0..N {
-                if k < active.count {
-                    beside[k] = T::zero();
+    // Beside a large unconstrained optimum a row counts as kept with its roundings. Once x is refined, it is looked at again.
+    for _ in 0..MOST_ROUNDS {
+        while let Some(row) = program.most_violated(&x, &left_out) {
+            let c = program.row(row);
+            let mut multiplier = T::zero();
+            loop {
+                if steps >= MOST_STEPS {
+                    return Err(NoOptimum::Limit { last: program.optimum(x, &active, steps) });
                 }
-            }
-            let falls = active.solve(&d);
-            let mut first: Option<(T, usize)> = None;
-            for k in 0..N {
-                if k < active.count && falls[k] > T::zero() {
-                    let length = active.multipliers[k] / falls[k];
-                    if first.is_none_or(|(before, _)| length < before) {
-                        first = Some((length, k));
+                let d = active.j.tr_mul(&c);
+                // The step z of x, beside the active rows, and the rates at which their multipliers fall.
+                let mut beside = d;
+                for k in 0..N {
+                    if k < active.count {
+                        beside[k] = T::zero();
                     }
                 }
-            }
-            let is_dependent = active.count >= N || !(beside.norm() > tolerance::<T>() * d.norm());
-            let (slack, _) = program.slack(row, &x);
-            let whole = -slack / beside.norm_squared();
-            steps += 1;
-            match first {
-                Some((length, out)) if is_dependent || length < whole => {
-                    if !is_dependent {
-                        x += active.j * beside * length;
-                    }
-                    active.multipliers -= falls * length;
-                    multiplier += length;
-                    active.remove(out);
-                }
-                None if is_dependent => {
-                    let mut conflict = SVector::<T, R>::zeros();
-                    if let Some(weight) = conflict.as_mut_slice().get_mut(row) {
-                        *weight = T::one();
-                    }
-                    for k in 0..N {
-                        if k < active.count {
-                            if let Some(weight) = conflict.as_mut_slice().get_mut(active.rows[k]) {
-                                *weight = -falls[k];
-                            }
+                let falls = active.solve(&d);
+                let mut first: Option<(T, usize)> = None;
+                for k in 0..N {
+                    if k < active.count && falls[k] > T::zero() {
+                        let length = active.multipliers[k] / falls[k];
+                        if first.is_none_or(|(before, _)| length < before) {
+                            first = Some((length, k));
                         }
                     }
-                    if program.is_conflict(&conflict) {
-                        return Err(NoOptimum::Infeasible { conflict });
-                    }
-                    // Violated by rounding alone.
-                    if let Some(is_out) = left_out.get_mut(row) {
-                        *is_out = true;
-                    }
-                    break;
                 }
-                _ => {
-                    x += active.j * beside * whole;
-                    active.multipliers -= falls * whole;
-                    active.add(row, multiplier + whole, d);
-                    break;
+                let is_dependent = active.count >= N || !(beside.norm() > tolerance::<T>() * d.norm());
+                let (slack, _) = program.slack(row, &x);
+                let whole = -slack / beside.norm_squared();
+                steps += 1;
+                match first {
+                    Some((length, out)) if is_dependent || length < whole => {
+                        if !is_dependent {
+                            x += active.j * beside * length;
+                        }
+                        active.multipliers -= falls * length;
+                        multiplier += length;
+                        active.remove(out);
+                    }
+                    None if is_dependent => {
+                        let mut conflict = SVector::<T, R>::zeros();
+                        if let Some(weight) = conflict.as_mut_slice().get_mut(row) {
+                            *weight = T::one();
+                        }
+                        for k in 0..N {
+                            if k < active.count {
+                                if let Some(weight) = conflict.as_mut_slice().get_mut(active.rows[k]) {
+                                    *weight = -falls[k];
+                                }
+                            }
+                        }
+                        if program.is_conflict(&conflict) {
+                            return Err(NoOptimum::Infeasible { conflict });
+                        }
+                        // Violated by rounding alone.
+                        if let Some(is_out) = left_out.get_mut(row) {
+                            *is_out = true;
+                        }
+                        break;
+                    }
+                    _ => {
+                        x += active.j * beside * whole;
+                        active.multipliers -= falls * whole;
+                        active.add(row, multiplier + whole, d);
+                        break;
+                    }
                 }
             }
+            program.size = program.size.max(x.amax());
+            program.largest = program.largest.max(program.size);
+            if !is_finite(&x) {
+                return Err(NoOptimum::NotFinite);
+            }
         }
-        program.size = program.size.max(x.amax());
-        if !is_finite(&x) {
-            return Err(NoOptimum::NotFinite);
+        program.refine(&mut x, &mut active);
+        program.shrink(&x);
+        if program.most_violated(&x, &left_out).is_none() {
+            break;
         }
     }
-    program.refine(&mut x, &mut active);
     Ok(program.optimum(x, &active, steps))
 }
 

@@ -140,10 +140,7 @@ pub fn time_optimal<'w, T: RealField + Copy, R: PathDynamics<N, Real = T>, S: As
         count = grid::halve(robot, pieces, &layout, nodes, segments, count, &interpolation);
         solved = solved && best.duration.is_finite();
     }
-    if !solved {
-        return Err(at(pieces.first().map_or(zero, |p| p.start), 0, TimingFault::TooCoarse { segments: count * 2 }));
-    }
-    if !best.duration.is_finite() {
+    if !solved || !best.duration.is_finite() {
         return Err(at(pieces.first().map_or(zero, |p| p.start), 0, TimingFault::TooCoarse { segments: count * 2 }));
     }
     Ok(Timing::new(pieces, segments, count, limits, friction, best.duration, best.lower))
@@ -183,7 +180,7 @@ impl<T: RealField + Copy, const N: usize> Solver<'_, T, N> {
                 NodeBound::AtMost(x) => segments[i].bound.node = x,
                 NodeBound::Nothing(index) => {
                     let (limit, joint) = limit(index, N);
-                    let Some((segment, end)) = right.map(|of| (of, false)).or(left.map(|of| (of, true))) else { continue };
+                    let Some((segment, end)) = beside(segments, i) else { continue };
                     return Err(at(segment, end, TimingFault::InfeasiblePoint { joint, limit }));
                 }
             }

@@ -164,6 +164,15 @@ impl<'a, T: RealField + Copy, const N: usize> Timing<'a, T, N> {
         Progress { s: segment.start + s, ds, dds }
     }
 
+    /// s and its derivatives at the fraction `t` of a segment; `None` where there are not as many.
+    pub fn at(&self, index: usize, t: T) -> Option<Progress<T>> {
+        let segment = self.segments.get(index)?;
+        let law = &segment.inner.law;
+        let [u0, u1] = law.acceleration();
+        let (ds, dds) = (law.x(t).max(T::zero()).sqrt(), u0 * (T::one() - t) + u1 * t);
+        Some(Progress { s: segment.start + segment.length * t, ds, dds })
+    }
+
     /// q, dq, ddq at a time.
     pub fn sample(&self, t: Duration) -> JointReference<T, N> {
         self.reference(&self.progress(t))

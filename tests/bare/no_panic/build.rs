@@ -1,4 +1,4 @@
-//! Generates every robot in both scalars and with each trigonometry that needs no `std`, with a call of each function; some
+//! Generates every robot in both scalars, and some with each trigonometry that needs no `std`, with a call of each function; some
 //! robots also have functions for many states. Links the C library, which starts the program.
 
 use armgen_codegen::build_script::{Robot, Scalar, Trig};
@@ -10,31 +10,32 @@ fn main() {
     let mut calls = String::new();
     // That a planted index is seen is shown by the robots that main() names: the whole program need not be built twice.
     let planted = env::var_os("CARGO_FEATURE_DELIBERATE_INDEX").is_some();
-    let wanted = |path: &PathBuf| {
-        let named = path.file_stem().is_some_and(|name| name == "scara" || name == "panda7");
-        path.extension().is_some_and(|e| e == "yaml") && (named || !planted)
-    };
+    let named = |path: &PathBuf| path.file_stem().is_some_and(|name| name == "scara" || name == "panda7");
+    let wanted = |path: &PathBuf| path.extension().is_some_and(|e| e == "yaml") && (named(path) || !planted);
+    // Sines are a function of their own, whatever the robot: each scalar has a kind of them, and two robots have all four.
+    let usual = |scalar, trig| (scalar == Scalar::F64) == (trig == Trig::Libm);
     for folder in ["../../../robots", "../../robots"] {
         let mut files: Vec<PathBuf> =
             fs::read_dir(folder).expect("the folder of robots").flatten().map(|entry| entry.path()).collect();
         files.sort();
         for path in files.iter().filter(|path| wanted(path)) {
             let robot = path.file_stem().expect("a file has a name").to_string_lossy();
-            for (scalar, trig, ending) in [
+            let all = [
                 (Scalar::F64, Trig::Libm, "f64"),
                 (Scalar::F32, Trig::Libm, "f32"),
-                (Scalar::F64, Trig::Fast, "f64_fast"),
                 (Scalar::F32, Trig::Fast, "f32_fast"),
-            ] {
+                (Scalar::F64, Trig::Fast, "f64_fast"),
+            ];
+            for (scalar, trig, ending) in all.into_iter().filter(|&(scalar, trig, _)| named(path) || usual(scalar, trig)) {
                 let name = format!("{robot}_{ending}");
                 Robot::new(path).scalar(scalar).trig(trig).file_stem(&name).inverse_kinematics().generate();
                 let module = fs::read_to_string(out.join(format!("{name}.rs"))).expect("the module was just written");
                 let runtime = fs::read_to_string(out.join(format!("{name}_runtime.rs"))).expect("it was written with it");
                 let texts = armgen_bare_calls::calls(&module) + &armgen_bare_calls::method_calls(&runtime);
                 fs::write(out.join(format!("{name}_calls.rs")), texts).expect("OUT_DIR can be written");
-                // One of inverse kinematics does for both trigonometries: it has its own.
                 let postures = fs::read_to_string(out.join(format!("{name}_ik.rs"))).expect("it was written with it");
-                let has_postures = trig == Trig::Libm && postures.contains("pub fn inverse_kinematics(");
+                // Inverse kinematics has its own sines.
+                let has_postures = usual(scalar, trig) && postures.contains("pub fn inverse_kinematics(");
                 let files = [name.clone(), format!("{name}_runtime"), format!("{name}_calls")].map(include).concat();
                 modules += &module_of(&name, &files);
                 if postures.contains("pub fn inverse_kinematics(") {

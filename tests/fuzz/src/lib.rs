@@ -1,4 +1,10 @@
-//! What every fuzz target demands of a reader of text.
+//! Targets for libFuzzer, and for a test of the workspace (tests/tests/fuzzed.rs) that takes in this file.
+
+pub mod experiment;
+pub mod expression;
+pub mod module;
+pub mod poses;
+pub mod robot;
 
 use armgen_codegen::{
     description::RobotDescription,

@@ -1,13 +1,15 @@
 //! Reads a C module: the header with the functions.
 //!
 //! ```text
-//! header   = guard [ fused ] [ library ] prologue constants [ sines ] [ sign ] [ stribeck ] { { part } function } epilogue
+//! header   = guard [ fused ] [ library ] prologue constants [ sines ] [ sign ] [ stribeck ] { { part } function } [ kernels ] epilogue
 //! function = static inline TYPE ROBOT_NAME( ARGUMENTS ) { ROBOT_UNFUSED { (void)ARGUMENT; } [ angles ] { line } { call { line } } result }
 //! angles   = const ROBOT_real angle[N] = {ANGLES};  ROBOT_real sine[N], cosine[N];  ROBOT_sin_cos(USED, angle, sine, cosine);
 //!            { const ROBOT_real NAME = sine[I]; | const ROBOT_real NAME = cosine[I]; }
 //! line     = const ROBOT_real NAME = SUM;
 //! result   = return SUM; | { PART[I][J] = SUM; }                   no argument is read once an entry is written: it may be the same array
 //! ```
+
+mod kernels;
 
 use std::collections::BTreeMap;
 
@@ -94,8 +96,8 @@ fn comment(lines: &[&str]) -> Vec<String> {
     lines[..last].iter().map(|line| line.strip_prefix(" *").unwrap_or(line).to_string()).collect()
 }
 
-/// Reads a header.
-pub(super) fn read(text: &str) -> Result<Module, Fault> {
+/// Reads a header, in CUDA one with kernels.
+pub(super) fn read(text: &str, language: Language) -> Result<Module, Fault> {
     let mut lines = Lines::new(text, COMMENTS)?;
     let name = lines.all.iter().find_map(|line| line.text.strip_prefix("#define ")?.split_once("_NAME \""));
     let (upper, rest) = name.ok_or_else(|| lines.fault("the module has no macro of the robot's name"))?;
@@ -161,15 +163,19 @@ pub(super) fn read(text: &str) -> Result<Module, Fault> {
         list: ("[", "]"),
         angles: ", ",
     };
+    // The kernels begin with the same line.
     let own_epilogue = robot.own(EPILOGUE);
     let end = Lines::new(&own_epilogue, COMMENTS)?;
     let mut reader = Reader { robot: &robot, syntax: &syntax, real, sizes, parts: BTreeMap::new(), steps: 0, asks: [false; 3] };
     let functions = reader.all(&mut lines, end.peek(), [trig.is_some(), sign, stribeck])?;
-    fixed(&mut lines, EPILOGUE)?;
+    if language == Language::Cuda {
+        kernels::read(&mut lines, &robot, &sizes, functions.iter().map(|(name, _)| name.as_str()))?;
+    }
+    lines.expect_all(&robot.own(EPILOGUE), COMMENTS)?;
     if !lines.ended() {
         return Err(lines.fault(format!("{} behind the end of the module", lines.shown())));
     }
-    Ok(Module { real, trig, head, constants, functions, ..Module::empty(Language::C) })
+    Ok(Module { real, trig, head, constants, functions, ..Module::empty(language) })
 }
 
 /// The macros of constants, and the scalar.

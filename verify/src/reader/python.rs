@@ -127,7 +127,7 @@ pub(super) fn read(text: &str) -> Result<Module, Fault> {
     let functions = reader.all(&mut lines, "", [trig.is_some(), sign, stribeck])?;
     let named = constants.len() + 1;
     let own = CONSTANTS.iter().map(|(name, ..)| (*name).to_string()).filter(|name| constants.contains_key(name));
-    let mut wanted: Vec<String> = own.chain(["DTYPE".into()]).collect();
+    let mut wanted: Vec<String> = own.chain(["DTYPE".into(), "by_joint".into()]).collect();
     wanted.extend(reader.structures.iter().cloned());
     wanted.extend(functions.iter().map(|(name, _)| name.clone()));
     if public != wanted {

@@ -35,7 +35,7 @@ fn named(state: &Arguments<f64>) -> Vec<(&'static str, &[f64])> {
 /// The test file; `module` is the name of the imported file, module or package.
 pub(super) fn print(kit: &Kit, language: Language, module: &str, origin: &Origin) -> String {
     let mark = match language {
-        Language::C | Language::JavaScript | Language::Rust => "//",
+        Language::C | Language::Cuda | Language::JavaScript | Language::Rust => "//",
         Language::Python => "#",
         Language::Matlab => "%",
     };
@@ -49,7 +49,7 @@ pub(super) fn print(kit: &Kit, language: Language, module: &str, origin: &Origin
     let commented: String = said.iter().map(|line| format!("{mark} {line}\n")).collect();
     match language {
         Language::Rust => String::new(),
-        Language::C => format!("/*\n * {}\n */\n{}", said.join("\n * "), c(kit, module)),
+        Language::C | Language::Cuda => format!("/*\n * {}\n */\n{}", said.join("\n * "), c(kit, module)),
         Language::JavaScript => commented + &javascript(kit, module),
         Language::Python => commented + &python(kit, module),
         Language::Matlab => matlab(kit, module, &commented),

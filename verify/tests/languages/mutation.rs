@@ -189,7 +189,7 @@ fn code_lines(text: &str, language: Language) -> Vec<(usize, usize)> {
     for line in text.split('\n') {
         let comment = match language {
             Language::Rust => line.trim_start().starts_with("//"),
-            Language::C | Language::JavaScript => {
+            Language::C | Language::Cuda | Language::JavaScript => {
                 let was = inside;
                 inside = (inside || line.starts_with("/*")) && !line.ends_with("*/");
                 was || line.starts_with("/*") || line.starts_with("//")

@@ -10,7 +10,7 @@ use armgen_codegen::schedule::Options;
 use armgen_codegen::Generated;
 use armgen_verify::reader::ModuleText;
 
-use super::tools::{numpy, python_with, succeed, there, write, write_package};
+use super::tools::{numpy, python_that, python_with, succeed, there, write, write_package};
 use crate::common;
 
 /// The first block of this kind after a heading of the page about languages.
@@ -226,7 +226,7 @@ import scara
 warnings.simplefilter('ignore')
 rng = np.random.default_rng(1)
 for count in (1, 5000):
-    for name in (name for name in scara.__all__ if name[0].islower()):
+    for name in (name for name in scara.__all__ if name[0].islower() and name != 'by_joint'):
         function = getattr(scara, name)
         of = lambda argument: scara.PARAMETERS if argument == 'pi' else scara.DOF
         states = [rng.uniform(-9, 9, (count, of(argument))) for argument in inspect.signature(function).parameters]
@@ -251,6 +251,184 @@ except ImportError:
     from functorch import grad, vmap
 assert near(vmap(grad(scara.kinetic_energy, argnums=1))(few, rates[:8]), momentum[:8])
 assert near(vmap(scara.inertia_matrix)(few), scara.inertia_matrix(few))
+",
+    );
+    succeed(Command::new(python).current_dir(&folder).arg("main.py"));
+}
+
+/// The modules of two arms, for the tests of compilers.
+fn arms_in(folder: &Path) {
+    for (name, scalar) in [("scara", Scalar::F64), ("panda7", Scalar::F32)] {
+        let text = super::generated(&common::source(name), scalar, Trig::Fast).in_language(Language::Python);
+        write(folder.join(format!("{name}.py")), text);
+    }
+}
+
+/// Compilers record both forms of a function whole. Results differ from those without a compiler by fused or reordered operations alone, at most
+/// `close` times the largest entry; angles beyond the range of the module's sines are included.
+const COMPILED: &str = "import importlib
+import sys
+
+import numpy as np
+
+
+def flat(result):
+    return [entry for part in result for entry in flat(part)] if isinstance(result, tuple) else [result]
+
+
+def check(put, compiled, closeness):
+    for arm, close in closeness.items():
+        module = importlib.import_module(arm)
+        rng = np.random.default_rng(1)
+        given = [rng.uniform(-3, 3, (64, module.DOF)).astype(module.DTYPE) for _ in range(3)]
+        given[0][:1] *= 7e4
+        for name, count in (('inverse_dynamics', 3), ('inertia_matrix', 1)):
+            function, states = getattr(module, name), given[:count]
+            expected = np.asarray(function(*map(put, states)))
+            found = np.asarray(compiled(function)(*map(put, states)))
+            by_joint = compiled(module.by_joint(function))(*(put(np.ascontiguousarray(array.T)) for array in states))
+            by_joint = np.stack([np.asarray(entry) for entry in flat(by_joint)], -1).reshape(expected.shape)
+            for result in (found, by_joint):
+                assert result.dtype == expected.dtype and result.shape == expected.shape, (arm, name)
+                error = np.abs(result - expected).max() / np.abs(expected).max()
+                print(arm, name, error, np.count_nonzero(result != expected))
+                assert error <= close, (arm, name, error)
+
+
+";
+
+/// `torch.compile` records a function without a break in the graph, once for all batches; the operations keep their bits.
+pub(crate) fn check_torch_compile() {
+    let Some(python) = python_that("import torch; torch.compile", "with torch 2 here") else { return };
+    let (folder, _) = folder_of("languages_torch_compile");
+    arms_in(&folder);
+    let own = "import torch
+
+graphs = []
+
+
+def as_recorded(graph, _):
+    graphs.append(graph)
+    return graph.forward
+
+
+def compiled(function):
+    torch._dynamo.reset()
+    return torch.compile(function, fullgraph=True, dynamic=True, backend=as_recorded)
+
+
+check(torch.from_numpy, compiled, {'scara': 0.0, 'panda7': 0.0})
+assert len(graphs) == 8
+import scara
+from torch.func import jvp, vjp
+
+q, dq = torch.from_numpy(np.random.default_rng(1).uniform(-3, 3, (2, 8, 4)))
+derivatives = scara.inverse_dynamics_derivatives(q, dq, dq)
+inertia = compiled(scara.inertia_matrix)
+inertia(torch.cat([q] * 1000))
+graphs.clear()
+inertia(q)
+assert not graphs
+tau = compiled(lambda q: scara.inverse_dynamics(q, dq, dq))
+_, forward = jvp(lambda q: scara.inverse_dynamics(q, dq, dq), (q,), (dq,))
+assert (forward - (derivatives[0] @ dq[..., None])[..., 0]).abs().max() < 1e-11
+_, back = vjp(lambda q: scara.inverse_dynamics(q, dq, dq), q)
+assert (back(dq)[0] - (derivatives[0].transpose(-1, -2) @ dq[..., None])[..., 0]).abs().max() < 1e-11
+tracked = q.clone().requires_grad_()
+tau(tracked).backward(dq)
+assert (tracked.grad - back(dq)[0]).abs().max() < 1e-11
+";
+    write(folder.join("main.py"), format!("{COMPILED}{own}"));
+    succeed(Command::new(python).current_dir(&folder).arg("main.py"));
+}
+
+/// `jax.jit` compiles functions, and differentiates them; without two passes it keeps the bits of NumPy.
+pub(crate) fn check_jax_jit() {
+    let Some(python) = python_with("jax") else { return };
+    let (folder, _) = folder_of("languages_jax_jit");
+    arms_in(&folder);
+    let own = "import jax
+
+jax.config.update('jax_enable_x64', True)
+check(jax.numpy.asarray, jax.jit, {'scara': 1e-15, 'panda7': 2e-6})
+import scara
+
+q, dq = np.random.default_rng(1).uniform(-3, 3, (2, 8, 4))
+same = jax.jit(scara.inverse_dynamics, compiler_options={'xla_disable_hlo_passes': 'fusion,algsimp'})
+assert np.array_equal(same(q, dq, dq), scara.inverse_dynamics(q, dq, dq))
+derivatives = scara.inverse_dynamics_derivatives(q, dq, dq)
+stacked = lambda *arguments: jax.numpy.stack(scara.by_joint(scara.inverse_dynamics)(*(x.T for x in arguments)), -1)
+q, dq = map(jax.numpy.asarray, (q, dq))
+for function in (scara.inverse_dynamics, stacked):
+    tau = jax.jit(lambda q: function(q, dq, dq))
+    _, forward = jax.jvp(tau, (q,), (dq,))
+    assert np.abs(forward - (derivatives[0] @ dq[..., None])[..., 0]).max() < 1e-11
+    _, back = jax.vjp(tau, q)
+    assert np.abs(back(dq)[0] - (np.swapaxes(derivatives[0], -1, -2) @ dq[..., None])[..., 0]).max() < 1e-11
+";
+    write(folder.join("main.py"), format!("{COMPILED}{own}"));
+    succeed(Command::new(python).current_dir(&folder).arg("main.py"));
+}
+
+/// Functions by joint: the bits of NumPy for every function, single states and broadcast arguments included; wrong arguments are told.
+pub(crate) fn check_by_joint() {
+    let Some(python) = numpy() else { return };
+    let (folder, generated) = folder_of("languages_by_joint");
+    write(folder.join("scara.py"), generated.in_language(Language::Python));
+    let other = super::generated(&common::source("dry_friction"), Scalar::F32, Trig::Std);
+    write(folder.join("friction.py"), other.in_language(Language::Python));
+    write(
+        folder.join("main.py"),
+        "import inspect
+import warnings
+
+import numpy as np
+
+import friction
+import scara
+
+warnings.simplefilter('ignore')
+rng = np.random.default_rng(1)
+
+
+def same(found, expected, lengths):
+    if lengths:
+        assert isinstance(found, tuple) and len(found) == lengths[0]
+        for i, row in enumerate(found):
+            same(row, expected[..., i] if len(lengths) == 1 else np.moveaxis(expected, -len(lengths), 0)[i], lengths[1:])
+    else:
+        assert found.shape == expected.shape and found.dtype == expected.dtype and np.array_equal(found, expected, equal_nan=True)
+
+
+for module in (scara, friction):
+    for shape in ((), (3,), (2, 3), (5000,)):
+        for name in (name for name in module.__all__ if name[0].islower() and name != 'by_joint'):
+            function = getattr(module, name)
+            of = lambda argument: module.PARAMETERS if argument == 'pi' else module.DOF
+            # Every other argument is that of a single state, for all.
+            arguments = inspect.signature(function).parameters
+            states = [rng.uniform(-9, 9, (shape if i % 2 == 0 else ()) + (of(a),)).astype(module.DTYPE) for i, a in enumerate(arguments)]
+            expected = function(*states)
+            for found in (
+                module.by_joint(function)(*(np.moveaxis(state, -1, 0) for state in states)),
+                module.by_joint(function)(*([np.asarray(state[..., i]) for i in range(state.shape[-1])] for state in states)),
+            ):
+                for one, other in zip(found, expected) if hasattr(expected, '_fields') else [(found, expected)]:
+                    same(one, other, other.shape[len(shape) :])
+
+
+def said(call):
+    try:
+        call()
+    except (TypeError, ValueError) as error:
+        return type(error).__name__ + ': ' + str(error)
+    raise AssertionError('nothing was said')
+
+
+gravity = scara.by_joint(scara.gravity)
+assert said(lambda: gravity(np.zeros((3, 9)))) == 'ValueError: q has 3 entries, and 4 are wanted'
+assert said(lambda: gravity(np.zeros((4, 9), np.float32))).startswith('TypeError: q has entries of float32')
+assert said(lambda: gravity([np.zeros(2), np.zeros(3), np.zeros(2), np.zeros(2)])).endswith('do not go together')
 ",
     );
     succeed(Command::new(python).current_dir(&folder).arg("main.py"));
@@ -310,7 +488,7 @@ except ImportError:
 rng = np.random.default_rng(1)
 for module in (scara, friction):
     for shape in ((), (3,), (2, 3)):
-        for name in (name for name in module.__all__ if name[0].islower()):
+        for name in (name for name in module.__all__ if name[0].islower() and name != 'by_joint'):
             function = getattr(module, name)
             of = lambda argument: module.PARAMETERS if argument == 'pi' else module.DOF
             states = [rng.uniform(-9, 9, shape + (of(a),)).astype(module.DTYPE) for a in inspect.signature(function).parameters]
@@ -377,7 +555,7 @@ pub(crate) fn check_tests(name: &str, scalar: Scalar, language: Language) {
         Language::JavaScript => there("node", "nodejs"),
         Language::Python => python.is_some(),
         Language::Matlab => there("octave-cli", "octave"),
-        Language::Rust => false,
+        Language::Rust | Language::Cuda => false,
     };
     if !there {
         return;
@@ -426,7 +604,7 @@ pub(crate) fn check_tests(name: &str, scalar: Scalar, language: Language) {
                 octave.args(["--no-init-file", "--eval", "robotTest"]);
                 octave
             }
-            Language::Rust => unreachable!("it has a test of its own"),
+            Language::Rust | Language::Cuda => unreachable!("it has a test of its own"),
         };
         let output = command.current_dir(&folder).output().expect("it runs");
         let said = format!("{}{}", String::from_utf8_lossy(&output.stdout), String::from_utf8_lossy(&output.stderr));

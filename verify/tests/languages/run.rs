@@ -146,10 +146,13 @@ pub(crate) fn check_with(name: &str, source: &Source, options: &Options, states:
     std::fs::create_dir_all(&folder).expect("a folder");
     write(folder.join("states"), robot.states(states));
     rust(&folder, &robot, &generated);
-    let has = |language: &Language| language.scalars().contains(&scalar) && (!options.fuse || *language == Language::C);
+    let has = |language: &Language| {
+        language.scalars().contains(&scalar) && *language != Language::Cuda && (!options.fuse || *language == Language::C)
+    };
     for language in super::others().filter(has) {
         let runs = match language {
-            Language::Rust => continue,
+            // The functions of CUDA are the text of C.
+            Language::Rust | Language::Cuda => continue,
             Language::C => {
                 let lanes = if scalar == Scalar::F64 { 8 } else { 16 };
                 let batched = common::generate_with(source, &Options { batch: Some(lanes), ..options.clone() });

@@ -27,10 +27,14 @@ pub(crate) fn numpy() -> Option<&'static str> {
 
 /// A Python that has a library.
 pub(crate) fn python_with(library: &str) -> Option<&'static str> {
-    let import = format!("import {library}");
-    let found = ["python3", "/usr/bin/python3"].into_iter().find(|python| runs(python, &["-c", &import]));
+    python_that(&format!("import {library}"), &format!("with {library} here (Debian: python3-{library})"))
+}
+
+/// A Python that executes this text.
+pub(crate) fn python_that(executes: &str, is: &str) -> Option<&'static str> {
+    let found = ["python3", "/usr/bin/python3"].into_iter().find(|python| runs(python, &["-c", executes]));
     if found.is_none() {
-        left_out(&format!("no Python with {library} here (Debian: python3-{library})"));
+        left_out(&format!("no Python {is}"));
     }
     found
 }

@@ -9,6 +9,7 @@ use armgen_codegen::validate::{density_of_cuboid, doubt_of_density};
 use nalgebra::{Matrix3, SymmetricEigen, Vector3};
 
 use super::{digits, legend};
+use crate::number;
 use crate::table::{Align, Table};
 
 /// A body with mass, in the frame of what carries it.
@@ -251,18 +252,7 @@ fn degrees(angle: f64) -> String {
 
 /// Four digits.
 pub(super) fn short(value: f64) -> String {
-    if value == 0.0 {
-        return "0".into();
-    }
-    let digits = 3 - value.abs().log10().floor() as i32;
-    if !(-3..=8).contains(&digits) {
-        return format!("{value:.3e}");
-    }
-    let text = format!("{value:.*}", digits.max(0) as usize);
-    match text.contains('.') {
-        true => text.trim_end_matches('0').trim_end_matches('.').to_owned(),
-        false => text,
-    }
+    number::short(value, 4)
 }
 
 #[cfg(test)]
@@ -276,11 +266,6 @@ mod tests {
         assert_eq!(up([0.0, 9.81, 0.0]), "-y0 points up: z0 is horizontal");
         assert_eq!(up([0.0; 3]), "none: the arm moves in a horizontal plane, or in free fall");
         assert_eq!(up([0.0, -9.81 * 0.5, -9.81 * 0.75f64.sqrt()]), "up is 30 degrees off z0");
-    }
-
-    #[test]
-    fn numbers_have_four_digits() {
-        assert_eq!([0.25, -0.021_234_5, 12_345.0, 1e-9].map(short), ["0.25", "-0.02123", "12345", "1.000e-9"]);
     }
 
     /// 1 kg, 0.3 m by 0.2 m by 0.1 m; a rod; moments of no body.

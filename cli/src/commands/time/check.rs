@@ -15,7 +15,7 @@ use nalgebra::SVector;
 
 use super::arm::Arm;
 use super::file::{self, Limits};
-use super::result::{short, three};
+use super::result::{four, short};
 use super::{unfit, USUAL};
 use crate::commands::verify::with_spinner;
 use crate::{input, terminal, DONE, FAULTY};
@@ -223,7 +223,7 @@ fn pieces<const N: usize>(samples: &Samples) -> Vec<Piece<f64, N>> {
             match (dq, ddq) {
                 (Some(dq), Some(ddq)) => {
                     let (v, w, a, b) = (dq[joint][i], dq[joint][i + 1], ddq[joint][i], ddq[joint][i + 1]);
-                    // What is left of q, dq, ddq at the end when the first three coefficients are there.
+                    // What is left of q, dq, ddq at the end when the first four coefficients are there.
                     let rest = (chord - v) / h - 0.5 * a;
                     let rate = (w - v) / h - a;
                     c[1] = v;
@@ -354,11 +354,11 @@ fn report(manipulator: &Manipulator, samples: &Samples, verdict: &Verdict) -> St
             table.row([
                 (*name).to_owned(),
                 manipulator.joints[joint].name.clone(),
-                format!("{} {unit}", three(worst.value)),
-                format!("{} {unit}", three(worst.limit)),
+                format!("{} {unit}", four(worst.value)),
+                format!("{} {unit}", four(worst.limit)),
                 share(worst.value / worst.limit),
                 share(worst.sampled),
-                format!("{} s", three(worst.t)),
+                format!("{} s", four(worst.t)),
                 verdict.to_owned(),
             ]);
         }

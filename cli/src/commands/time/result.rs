@@ -3,6 +3,7 @@
 use std::fmt::Write as _;
 use std::time::Duration;
 
+use crate::number;
 use armgen_runtime::timing::{Limit, Piece, Profile, Timing, UpperBound};
 use armgen_runtime::trajectory::Progress;
 use armgen_terminal::table::{Align, Table};
@@ -43,20 +44,7 @@ struct Binding {
 
 /// Six significant digits.
 pub(super) fn short(x: f64) -> String {
-    if x == 0.0 || !x.is_finite() {
-        return format!("{x}");
-    }
-    let size = x.abs().log10().floor();
-    if !(-4.0..9.0).contains(&size) {
-        return format!("{x:.4e}");
-    }
-    let digits = (5.0 - size).clamp(0.0, 9.0) as usize;
-    let text = format!("{x:.digits$}");
-    if text.contains('.') {
-        text.trim_end_matches('0').trim_end_matches('.').to_owned()
-    } else {
-        text
-    }
+    number::short(x, 6)
 }
 
 pub(super) fn motion<const N: usize>(job: &Job<'_>, arm: &Arm<N>, path: &Curve<N>, timing: &Timing<'_, f64, N>) -> Motion {
@@ -91,14 +79,11 @@ fn end_of<const N: usize>(timing: &Timing<'_, f64, N>, segment: usize) -> f64 {
 fn largest<const N: usize>(job: &Job<'_>, arm: &Arm<N>, path: &Curve<N>, timing: &Timing<'_, f64, N>) -> Vec<Largest> {
     let limits = &job.file.limits;
     let mut largest = vec![Largest::default(); job.manipulator.dof()];
-    for of in (0..timing.segments()).filter_map(|i| timing.profile(i)) {
+    for segment in 0..timing.segments() {
         for place in 0..=PLACES {
             // At an end itself the sign of a rate may be that of the neighbour.
             let t = 1e-9 + (1.0 - 2e-9) * place as f64 / PLACES as f64;
-            let middle = 0.5 * (of.x[0] + of.x[1]) + of.k;
-            let x = of.x[0] * (1.0 - t) * (1.0 - t) + 2.0 * middle * t * (1.0 - t) + of.x[1] * t * t;
-            let u = ((middle - of.x[0]) * (1.0 - t) + (of.x[1] - middle) * t) / of.length;
-            let progress = Progress { s: of.start + t * of.length, ds: x.max(0.0).sqrt(), dds: u };
+            let Some(progress) = timing.at(segment, t) else { continue };
             let at = timing.reference(&progress);
             let tau = arm.torque(&at.q, &at.dq, &at.ddq, &slope(path, progress.s));
             for (joint, largest) in largest.iter_mut().enumerate() {
@@ -193,7 +178,7 @@ fn text<const N: usize>(
         let units = if job.slides(joint) { ["m/s", "m/s²", "N"] } else { ["rad/s", "rad/s²", "N m"] };
         let mut cells = vec![job.joint(joint).to_owned()];
         for (k, unit) in units.into_iter().enumerate() {
-            cells.push(format!("{} {unit}", three(of.value[k])));
+            cells.push(format!("{} {unit}", four(of.value[k])));
             cells.push(if of.share[k] > 0.0 { format!("{:.1} %", 100.0 * of.share[k]) } else { String::new() });
         }
         joints.row(cells);
@@ -202,7 +187,7 @@ fn text<const N: usize>(
     let mut table = Table::new([("at its limit", Left), ("of the time", Right), ("first at", Right)]);
     let share = |seconds: f64| format!("{:.1} %", 100.0 * seconds / timing.seconds());
     for of in bindings {
-        table.row([of.name.clone(), share(of.seconds), format!("{} s", three(of.first))]);
+        table.row([of.name.clone(), share(of.seconds), format!("{} s", four(of.first))]);
     }
     let rest = timing.seconds() - bindings.iter().map(|of| of.seconds).sum::<f64>();
     if rest > 5e-4 * timing.seconds() {
@@ -222,30 +207,15 @@ fn percent(gap: f64) -> String {
     format!("{percent:.digits$}")
 }
 
-/// Four significant digits of a value.
-pub(super) fn three(x: f64) -> String {
-    if x.abs() < 1e-9 {
-        return "0".to_owned();
-    }
-    let size = x.abs().log10().floor();
-    if !(-4.0..7.0).contains(&size) {
-        return format!("{x:.3e}");
-    }
-    let digits = (3.0 - size).clamp(0.0, 6.0) as usize;
-    format!("{x:.digits$}")
+/// Four significant digits; 0 in place of errors of rounding.
+pub(super) fn four(x: f64) -> String {
+    number::short(if x.abs() < 1e-9 { 0.0 } else { x }, 4)
 }
 
 /// The end of the path with the acceleration of the last segment.
 fn arrival<const N: usize>(timing: &Timing<'_, f64, N>) -> Progress<f64> {
-    let last = timing.segments().checked_sub(1).and_then(|i| timing.profile(i));
-    last.map_or_else(
-        || timing.progress(timing.duration()),
-        |of| Progress {
-            s: of.start + of.length,
-            ds: of.x[1].max(0.0).sqrt(),
-            dds: (of.x[1] - 0.5 * (of.x[0] + of.x[1]) - of.k) / of.length,
-        },
-    )
+    let last = timing.segments().checked_sub(1).and_then(|i| timing.at(i, 1.0));
+    last.unwrap_or_else(|| timing.progress(timing.duration()))
 }
 
 fn csv<const N: usize>(job: &Job<'_>, arm: &Arm<N>, path: &Curve<N>, timing: &Timing<'_, f64, N>) -> String {

@@ -15,6 +15,7 @@ use crate::manipulator::Manipulator;
 use crate::program::Module;
 
 const NUMBERS: &str = include_str!("solver/numbers.h");
+const TABLE: &str = include_str!("solver/table.h");
 const LARGE_ANGLES: &str = include_str!("solver/large_angles.h");
 
 /// Functions of one scalar.
@@ -140,6 +141,9 @@ pub fn print(
     if bodies.contains("_libm_sin_cos(") {
         text += &own(LARGE_ANGLES);
         text += &own(library.sin_cos);
+    }
+    if !tables.is_empty() {
+        text += &own(TABLE);
     }
     text += &(macros + &typedefs + &tables + &bodies);
     text += &faces(&names, found, &inner);

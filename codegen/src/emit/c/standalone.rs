@@ -7,7 +7,7 @@ use std::fmt::Write;
 
 use super::header::{function_comment, macros, macros_of, opening, signature, POINTERS};
 use super::syntax::{most_lanes, C};
-use super::{batch, prefix, returns_a_number};
+use super::{batch, kernels, prefix, returns_a_number};
 use crate::emit::plain::{
     asks_for_exponentials, asks_for_signs, described, expression, of_robot, places, reads_an_argument, waves,
 };
@@ -34,11 +34,11 @@ fn vector_of(lanes: usize) -> String {
     format!("#define ROBOT_VECTOR_LANES {lanes}\n#define ROBOT_VECTOR_AT(from) {{{}}}", entries.join(", "))
 }
 
-pub(super) fn print(module: &Module, origin: &Origin, notes: &Notes) -> String {
+pub(super) fn print(module: &Module, language: Language, origin: &Origin, notes: &Notes) -> String {
     let name = prefix(module);
     let upper = macros_of(&name);
     let c = C { module, name, upper };
-    let mut text = opening(head::of_module(module, Language::C, origin, &notes.head), &module.absent, &c.upper);
+    let mut text = opening(head::of_module(module, language, origin, &notes.head), &module.absent, &c.upper);
     if module.batch.is_some() {
         text += "#include <stddef.h>\n\n";
     }
@@ -68,6 +68,9 @@ pub(super) fn print(module: &Module, origin: &Origin, notes: &Notes) -> String {
     if let Some(lanes) = module.batch {
         text += &batch::print(&c, lanes);
     }
+    if language == Language::Cuda {
+        text += &kernels::print(&c);
+    }
     text += "\n";
     text + EPILOGUE
 }
@@ -77,7 +80,7 @@ pub(super) fn library(module: &Module, origin: &Origin, lanes: usize) -> String 
     let module = Module { batch: Some(lanes), ..module.clone() };
     let name = prefix(&module);
     let c = C { module: &module, upper: macros_of(&name), name };
-    let mut text = print(&module, origin, &Notes::default());
+    let mut text = print(&module, Language::C, origin, &Notes::default());
     text += "\n#if defined(_WIN32)\n#define EXPORTED __declspec(dllexport)\n#else\n#define EXPORTED __attribute__((visibility(\"default\")))\n#endif\n";
     for function in &module.functions {
         let own = function.name();

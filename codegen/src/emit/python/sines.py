@@ -6,10 +6,9 @@ def _all(xp: Any, truths: Any) -> bool:
         return False
 
 
-def _sin_cos(xp: Any, angles: tuple[Any, ...]) -> tuple[_Entries, _Entries]:
+def _waves(xp: Any, x: Any) -> tuple[Any, Any]:
     # Sines and cosines of angles, rad, each within 1 unit in the last place; those of |x| > @limit@ are the library's.
     # @sines_of_arrays@
-    x = xp.stack(angles)
     n = xp.round(x * @two_over_pi@) + 0.0
     first = x - n * @first@
     step = n * @second@
@@ -30,5 +29,9 @@ def _sin_cos(xp: Any, angles: tuple[Any, ...]) -> tuple[_Entries, _Entries]:
     cosine = c * a + s * b
     inside = x * x <= @square@
     if _all(xp, inside):
-        return _Entries(sine), _Entries(cosine)
-    return _Entries(xp.where(inside, sine, xp.sin(x))), _Entries(xp.where(inside, cosine, xp.cos(x)))
+        return sine, cosine
+    return xp.where(inside, sine, xp.sin(x)), xp.where(inside, cosine, xp.cos(x))
+
+
+def _sin_cos(xp: Any, angles: tuple[Any, ...]) -> tuple[Any, Any]:
+    return _of_each(xp, _waves, angles)

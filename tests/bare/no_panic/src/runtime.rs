@@ -31,15 +31,15 @@ use armgen_runtime::{
 use core::{hint::black_box, time::Duration};
 
 /// Numbers, vectors and times out of nowhere.
-fn number<T: RealField + Copy>() -> T {
+pub(crate) fn number<T: RealField + Copy>() -> T {
     convert(black_box(0.3_f64))
 }
 
-fn numbers<T: RealField + Copy, const N: usize>() -> [T; N] {
+pub(crate) fn numbers<T: RealField + Copy, const N: usize>() -> [T; N] {
     core::array::from_fn(|_| number())
 }
 
-fn vector<T: RealField + Copy, const N: usize>() -> SVector<T, N> {
+pub(crate) fn vector<T: RealField + Copy, const N: usize>() -> SVector<T, N> {
     SVector::from(numbers::<T, N>())
 }
 
@@ -47,7 +47,7 @@ fn time() -> Duration {
     black_box(Duration::from_millis(7))
 }
 
-fn keep<V>(value: V) {
+pub(crate) fn keep<V>(value: V) {
     black_box(value);
 }
 

@@ -1,7 +1,8 @@
 //! Time-optimal motion on a joint path, with arguments that the optimiser knows nothing of.
 
+use super::runtime::{keep, number, numbers, vector};
 use armgen_runtime::{
-    nalgebra::{convert, RealField, SVector},
+    nalgebra::RealField,
     robot::Dynamics,
     timing::{
         time_optimal, Command, Ends, Governor, JointFriction, JointPath, Limit, Limits, LinkBound, Node, PathDynamics, PathModel,
@@ -9,22 +10,6 @@ use armgen_runtime::{
     },
 };
 use core::{hint::black_box, time::Duration};
-
-fn number<T: RealField + Copy>() -> T {
-    convert(black_box(0.3_f64))
-}
-
-fn numbers<T: RealField + Copy, const N: usize>() -> [T; N] {
-    core::array::from_fn(|_| number())
-}
-
-fn vector<T: RealField + Copy, const N: usize>() -> SVector<T, N> {
-    SVector::from(numbers::<T, N>())
-}
-
-fn keep<V>(value: V) {
-    black_box(value);
-}
 
 /// Times a path of two pieces and asks for everything that is known of the motion.
 #[inline(never)]
@@ -72,6 +57,7 @@ fn results<T: RealField + Copy, const N: usize>(timing: &Timing<'_, T, N>) {
         Timing::gap(timing),
         Timing::segments(timing),
     ));
+    keep(Timing::at(timing, black_box(3), number()));
     keep((Timing::profile(timing, black_box(3)), Timing::upper_bound(timing, black_box(3))));
     let at = Timing::progress(timing, black_box(Duration::from_millis(7)));
     keep((Timing::reference(timing, &at), Timing::sample(timing, black_box(Duration::from_millis(7)))));

@@ -1,5 +1,5 @@
 /* Vectors of angles where the processor has them, single angles elsewhere. */
-#if defined(__GNUC__) && (defined(__SSE2__) || defined(__aarch64__) || defined(__wasm_simd128__))
+#if defined(__GNUC__) && !defined(__CUDACC__) && !defined(__HIPCC__) && (defined(__SSE2__) || defined(__aarch64__) || defined(__wasm_simd128__))
 #if defined(__AVX__)
 #define ROBOT_VECTOR_LANES 4
 #define ROBOT_VECTOR_AT(from) {(from)[0], (from)[1], (from)[2], (from)[3]}

@@ -6,14 +6,13 @@ def _all(xp: Any, truths: Any) -> bool:
         return False
 
 
-def _sin_cos(xp: Any, angles: tuple[Any, ...]) -> tuple[_Entries, _Entries]:
+def _waves(xp: Any, x: Any) -> tuple[Any, Any]:
     # Sines and cosines of angles, rad, each within 1 unit in the last place; those of |x| > 65536 are the library's.
     # n is the integer nearest to 2x/pi: + 0.0 makes it no -0.
     # x = n pi/2 + r - e, after Cody and Waite (1980): pi/2 is a sum of three numbers, of which the first two have 37 bits. Their products
     # with n are exact, and so is x less the first; e holds the third product less what r rounds away. p and q are minimax on
     # |r| <= pi/4 (Remez). b is at first -n modulo 4, from -2 to 2, then minus the sine of n pi/2, of which a is the cosine: the theorems of addition
     # are exact, as a product with 1 and a sum with 0 are, and s is 0 for x = 0 alone.
-    x = xp.stack(angles)
     n = xp.round(x * 0.6366197723675814) + 0.0
     first = x - n * 1.5707963267923333
     step = n * 2.5633441515839558e-12
@@ -34,5 +33,9 @@ def _sin_cos(xp: Any, angles: tuple[Any, ...]) -> tuple[_Entries, _Entries]:
     cosine = c * a + s * b
     inside = x * x <= 4294967296.0
     if _all(xp, inside):
-        return _Entries(sine), _Entries(cosine)
-    return _Entries(xp.where(inside, sine, xp.sin(x))), _Entries(xp.where(inside, cosine, xp.cos(x)))
+        return sine, cosine
+    return xp.where(inside, sine, xp.sin(x)), xp.where(inside, cosine, xp.cos(x))
+
+
+def _sin_cos(xp: Any, angles: tuple[Any, ...]) -> tuple[Any, Any]:
+    return _of_each(xp, _waves, angles)

@@ -1,3 +1,6 @@
-def _sin_cos(xp: Any, angles: tuple[Any, ...]) -> tuple[_Entries, _Entries]:
-    x = xp.stack(angles)
-    return _Entries(xp.sin(x)), _Entries(xp.cos(x))
+def _waves(xp: Any, x: Any) -> tuple[Any, Any]:
+    return xp.sin(x), xp.cos(x)
+
+
+def _sin_cos(xp: Any, angles: tuple[Any, ...]) -> tuple[Any, Any]:
+    return _of_each(xp, _waves, angles)

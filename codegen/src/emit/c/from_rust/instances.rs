@@ -27,7 +27,7 @@ impl<'a> Translator<'a> {
                 let _ = write!(self.macros, "\n{said}#define {text} {value}\n");
             } else {
                 let of = self.c_type(&ty)?;
-                let _ = write!(self.tables, "\n{said}static const {of} {text} = {value};\n");
+                let _ = write!(self.tables, "\n{said}{}_TABLE {of} {text} = {value};\n", self.upper);
             }
         }
         Ok((text, ty))

@@ -1,5 +1,5 @@
 /* Vectors of angles where the processor has them, single angles elsewhere. */
-#if defined(__GNUC__) && (defined(__SSE2__) || defined(__aarch64__) || defined(__wasm_simd128__))
+#if defined(__GNUC__) && !defined(__CUDACC__) && !defined(__HIPCC__) && (defined(__SSE2__) || defined(__aarch64__) || defined(__wasm_simd128__))
 @lanes@
 typedef robot_real robot_vector __attribute__((vector_size(ROBOT_VECTOR_LANES * sizeof(robot_real))));
 typedef @mask@ robot_mask __attribute__((vector_size(ROBOT_VECTOR_LANES * sizeof(robot_real))));
