@@ -2,7 +2,7 @@
 
 use std::path::PathBuf;
 
-use armgen_codegen::build_script::{Robot, Trig};
+use armgen_codegen::build_script::{Robot, Scalar, Trig};
 use signatures::of_module;
 
 #[allow(missing_docs, unreachable_pub, dead_code)]
@@ -23,6 +23,10 @@ fn main() {
                 Some(before) => before.into_iter().filter(|function| functions.contains(function)).collect(),
             });
         }
+    }
+    for lanes in [8, 16] {
+        let panda = Robot::new("../robots/panda7.yaml").scalar(Scalar::F32).trig(Trig::Fast).batch(lanes);
+        panda.functions(["inverse_dynamics"]).file_stem(format!("panda7_lanes_{lanes}")).generate();
     }
     // The forms with parameters at run time cost the same as the others, except for their arguments.
     let functions = common.unwrap_or_default().into_iter().filter(|(name, _)| !name.ends_with("_with"));

@@ -18,11 +18,13 @@ mod signatures;
 const NARROW: [&str; 4] = ["everything", "puma560", "scara", "scara4"];
 
 /// The robots that are emitted with functions for many states.
-const BATCHES: [(&str, &str, Trig, Scalar, usize); 5] = [
+const BATCHES: [(&str, &str, Trig, Scalar, usize); 6] = [
     // Functions for one state call `sin_cos_one` alone, those for many `sin_cos`, too.
     ("robots/single_joint.yaml", "single_joint_batch", Trig::Fast, Scalar::F64, 4),
     ("../robots/scara4.yaml", "scara4_batch", Trig::Fast, Scalar::F64, 8),
     ("../robots/scara4.yaml", "scara4_batch_f32", Trig::Fast, Scalar::F32, 16),
+    // Dry friction, a general angle, and blocks that no vector divides.
+    ("robots/everything.yaml", "everything_batch_f32", Trig::Fast, Scalar::F32, 12),
     ("../robots/scara4.yaml", "scara4_batch_std", Trig::Std, Scalar::F64, 3),
     ("../robots/ur5.yaml", "ur5_batch", Trig::Libm, Scalar::F64, 4),
 ];

@@ -330,7 +330,8 @@ impl<'a> Reader<'a, '_> {
             text.split_once("] = {").ok_or_else(|| Fault { line, reason: "an array of angles has its values".into() })?;
         let waves = body.angles(angles, line)?;
         let used = waves.len();
-        let wanted = used.next_multiple_of(4);
+        // As many as fill the longest vector.
+        let wanted = used.next_multiple_of(if self.real == Float::F64 { 4 } else { 8 });
         if filled != wanted.to_string() {
             return Err(Fault { line, reason: format!("an array of {filled} for {used} angles, not of {wanted}") });
         }

@@ -63,6 +63,7 @@ pub(crate) fn check_page() {
             command.current_dir(&folder).env("XDG_CACHE_HOME", folder.join("cache")).arg("compiled.py");
             prints(&mut command, &block("Python, compiled", "text"));
             check_compiler_with_options(&folder, python);
+            check_threads(&folder, python);
         }
     }
     if there("octave-cli", "octave") {
@@ -100,6 +101,33 @@ given(None, ('-g0 --version', '-g0 -O0 '))
 ",
     );
     succeed(Command::new(python).current_dir(folder).arg("compilers.py"));
+}
+
+/// Threads that share the states give the bits of a single thread, in every state.
+fn check_threads(folder: &Path, python: &str) {
+    write(
+        folder.join("threads.py"),
+        "import os
+import numpy as np
+import scara_native
+
+os.cpu_count = lambda: 3
+fast = scara_native.load(folder='kept', flags=['-O0'])
+q, dq = np.random.default_rng(1).uniform(-3, 3, (2, 10, 1001, 4))
+for threads in (0, 2, 3, 9):
+    assert (fast.gravity(q, threads=threads) == fast.gravity(q)).all()
+    for many, one in zip(fast.equations_of_motion(q, dq, threads=threads), fast.equations_of_motion(q, dq)):
+        assert many.tobytes() == one.tobytes()
+assert fast.gravity(np.zeros((0, 4)), threads=2).shape == (0, 4)
+try:
+    fast.gravity(q, threads=-1)
+except ValueError as error:
+    assert str(error) == 'threads: 0 or more, not -1'
+else:
+    raise AssertionError('refused')
+",
+    );
+    succeed(Command::new(python).current_dir(folder).arg("threads.py"));
 }
 
 /// Messages for callers of a package: about a row in place of a column, about other types of numbers, and from `help`.

@@ -154,7 +154,8 @@ pub(crate) fn check_with(name: &str, source: &Source, options: &Options, states:
             // The functions of CUDA are the text of C.
             Language::Rust | Language::Cuda => continue,
             Language::C => {
-                let batched = common::generate_with(source, &Options { batch: Some(8), ..options.clone() });
+                let lanes = if scalar == Scalar::F64 { 8 } else { 16 };
+                let batched = common::generate_with(source, &Options { batch: Some(lanes), ..options.clone() });
                 let mut runs = c(&folder, &robot, &generated, effort);
                 runs.extend(batch(&folder, &robot, &batched, effort));
                 runs

@@ -3,7 +3,7 @@
 
 use std::fmt::Write;
 
-use super::syntax::{C, VECTOR};
+use super::syntax::{most_lanes, C};
 use super::{macro_of, returns_a_number};
 use crate::catalogue::{Argument, Sizes};
 use crate::emit::plain::{expression, of_robot, waves, Syntax};
@@ -85,7 +85,9 @@ impl C<'_> {
         }
         if !waves.is_empty() {
             // Filled up to whole vectors; zeros where the lanes of an angle are no whole vectors.
-            let step = VECTOR / [4, 2, 1].into_iter().find(|n| module.batch.is_some_and(|lanes| lanes % n == 0)).unwrap_or(1);
+            let vector = most_lanes(module.scalar);
+            let fits = |n: &usize| vector % n == 0 && module.batch.is_some_and(|lanes| lanes % n == 0);
+            let step = vector / (1..=vector).rev().find(fits).unwrap_or(1);
             let shape = format!("[{}][{upper}_LANES]", waves.len().next_multiple_of(step));
             let zeros = if step > 1 { " = {{0}}" } else { "" };
             let _ = writeln!(text, "        {name}_real angle{shape}{zeros}, sine{shape}, cosine{shape};");

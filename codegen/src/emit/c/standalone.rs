@@ -6,7 +6,7 @@
 use std::fmt::Write;
 
 use super::header::{function_comment, macros, macros_of, opening, signature, POINTERS};
-use super::syntax::{C, VECTOR};
+use super::syntax::{most_lanes, C};
 use super::{batch, kernels, prefix, returns_a_number};
 use crate::emit::plain::{
     asks_for_exponentials, asks_for_signs, described, expression, of_robot, places, reads_an_argument, waves,
@@ -28,9 +28,11 @@ const STD: &str = include_str!("sines/std.h");
 const FAST: &str = include_str!("sines/fast.h");
 const FUSED: &str = include_str!("fused.h");
 
-/// Lanes of a vector of angles. Every processor with vectors has this number, up to `VECTOR`.
-const OF_FOUR: &str = "#define ROBOT_VECTOR_LANES 4\n#define ROBOT_VECTOR_AT(from) {(from)[0], (from)[1], (from)[2], (from)[3]}";
-const OF_TWO: &str = "#define ROBOT_VECTOR_LANES 2\n#define ROBOT_VECTOR_AT(from) {(from)[0], (from)[1]}";
+/// The lines that define a vector of so many angles. The number of angles in an array is a multiple of each.
+fn vector_of(lanes: usize) -> String {
+    let entries: Vec<String> = (0..lanes).map(|lane| format!("(from)[{lane}]")).collect();
+    format!("#define ROBOT_VECTOR_LANES {lanes}\n#define ROBOT_VECTOR_AT(from) {{{}}}", entries.join(", "))
+}
 
 pub(super) fn print(module: &Module, language: Language, origin: &Origin, notes: &Notes) -> String {
     let name = prefix(module);
@@ -127,8 +129,8 @@ impl C<'_> {
     fn private(&self, template: &str) -> String {
         let scalar = self.module.scalar;
         let (lanes, mask, suffix) = match scalar {
-            Scalar::F64 => (format!("#if defined(__AVX__)\n{OF_FOUR}\n#else\n{OF_TWO}\n#endif"), "long long", ""),
-            Scalar::F32 => (OF_FOUR.to_string(), "int", "f"),
+            Scalar::F64 => (format!("#if defined(__AVX__)\n{}\n#else\n{}\n#endif", vector_of(4), vector_of(2)), "long long", ""),
+            Scalar::F32 => (format!("#if defined(__AVX2__)\n{}\n#else\n{}\n#endif", vector_of(8), vector_of(4)), "int", "f"),
         };
         let suffixed = |word: &str| match word.trim_end_matches(')') {
             number if number.contains('.') => format!("{number}{suffix}{}", &word[number.len()..]),
@@ -172,7 +174,7 @@ impl C<'_> {
         if used == 0 {
             return;
         }
-        let filled = used.next_multiple_of(VECTOR);
+        let filled = used.next_multiple_of(most_lanes(module.scalar));
         let angles: Vec<&str> = waves.iter().map(|wave| wave.angle.as_str()).collect();
         let _ = writeln!(text, "    const {name}_real angle[{filled}] = {{{}}};", angles.join(", "));
         let _ = writeln!(text, "    {name}_real sine[{filled}], cosine[{filled}];");

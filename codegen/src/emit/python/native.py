@@ -43,7 +43,8 @@ def load(compiler: Optional[str] = None, flags: Optional[Sequence[str]] = None, 
     - `folder`: where the library is kept, under a name that is a hash of source, compiler, flags and processor; otherwise armgen in the user's
       cache folder.
 
-    The result has the functions of the module over arrays, with the same names, shapes and bits.
+    The result has the functions of the module over arrays, with the same names, shapes and bits. Each takes `threads`: how many share the
+    states, at most as many as there are processors, 0 for as many; the bits are the same.
     """
     command = _compiler(compiler)
     own = ["-O3", "-march=native"] if flags is None else list(flags)
@@ -83,6 +84,10 @@ def _entered(name: str, value: Any, length: int) -> Any:
     return value
 
 
+# Fewer states take less time than to start a thread.
+_SHARE = 2048
+
+
 class _Function:
     # A function of the library: its arguments with their lengths, and the dimensions of its results.
 
@@ -91,7 +96,9 @@ class _Function:
         function.argtypes = [ctypes.c_size_t] + [ctypes.c_void_p] * (len(arguments) + len(results))
         function.restype = None
 
-    def __call__(self, *values: Any) -> Any:
+    def __call__(self, *values: Any, threads: int) -> Any:
+        if threads < 0:
+            raise ValueError(f"threads: 0 or more, not {threads}")
         arrays = [_entered(name, value, length) for (name, length), value in zip(self._arguments, values)]
         shape = arrays[0].shape[:-1]
         if any(array.shape[:-1] != shape for array in arrays):
@@ -99,6 +106,22 @@ class _Function:
             arrays = [np.broadcast_to(array, shape + array.shape[-1:]) for array in arrays]
         arrays = [np.ascontiguousarray(array) for array in arrays]
         results = [np.empty(shape + lengths, dtype=_DTYPE) for lengths in self._results]
-        # ctypes lets other threads run meanwhile.
-        self._function(math.prod(shape), *[array.ctypes.data for array in arrays], *[result.ctypes.data for result in results])
+        states = math.prod(shape)
+        # The address of each array, and the bytes of a state in it.
+        places = [(array.ctypes.data, array.itemsize * array.shape[-1]) for array in arrays]
+        places += [(result.ctypes.data, result.itemsize * math.prod(lengths)) for result, lengths in zip(results, self._results)]
+
+        def work(start: int, stop: int) -> None:
+            # ctypes lets other threads run meanwhile.
+            self._function(stop - start, *[address + start * size for address, size in places])
+
+        processors = os.cpu_count() or 1
+        shares = max(1, min(threads or processors, processors, states // _SHARE))
+        bounds = [states * share // shares for share in range(shares + 1)]
+        others = [threading.Thread(target=work, args=bounds[share : share + 2]) for share in range(1, shares)]
+        for other in others:
+            other.start()
+        work(bounds[0], bounds[1])
+        for other in others:
+            other.join()
         return results

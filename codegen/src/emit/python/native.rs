@@ -31,7 +31,7 @@ pub fn print(module: &Module, origin: &Origin) -> Native {
     text +=
         "\n\"\"\"The functions as a library of C, for many states at a time: `load()` compiles it where it is used.\"\"\"\n\n";
     text += "from __future__ import annotations\n\nimport ctypes\nimport hashlib\nimport math\nimport os\nimport platform\nimport shlex\nimport shutil\n";
-    text += "import subprocess\nimport sys\nimport tempfile\nfrom pathlib import Path\nfrom typing import Any, NamedTuple, Optional, Sequence, Tuple\n\n";
+    text += "import subprocess\nimport sys\nimport tempfile\nimport threading\nfrom pathlib import Path\nfrom typing import Any, NamedTuple, Optional, Sequence, Tuple\n\n";
     text += "import numpy as np\n\n__all__ = [\"Native\", \"load\"]\n";
     let dtype = match module.scalar {
         Scalar::F64 => "float64",
@@ -67,8 +67,12 @@ pub fn print(module: &Module, origin: &Origin) -> Native {
         let title = documentation::function(function, module, true).into_iter().take(1).collect::<Vec<Block>>();
         let title = documentation::plain(&title, &link).join(" ");
         let returns = structure(function.quantity).unwrap_or("Any".into());
-        let _ = writeln!(text, "\n    def {}(self{signature}) -> {returns}:\n        \"\"\"{title}\"\"\"", function.name());
-        let call = format!("self._{}({})", function.name(), names.join(", "));
+        let _ = writeln!(
+            text,
+            "\n    def {}(self{signature}, *, threads: int = 1) -> {returns}:\n        \"\"\"{title}\"\"\"",
+            function.name()
+        );
+        let call = format!("self._{}({}, threads=threads)", function.name(), names.join(", "));
         let _ = match structure(function.quantity) {
             Some(name) => writeln!(text, "        return {name}(*{call})"),
             None => writeln!(text, "        return {call}[0]"),

@@ -152,15 +152,30 @@ fn of_slices(module: &Module, function: &Function) -> TokenStream {
     let first = &names[0];
     let chunks = names.iter().skip(1).map(|n| quote!(.zip(#n.chunks(LANES))));
     let pattern = names.iter().skip(1).fold(quote!(#first), |pattern, n| quote!((#pattern, #n)));
+    let blocks: Vec<Ident> = names.iter().map(|n| format_ident!("{n}_block")).collect();
+    let sizes = function.arguments.iter().map(|&a| argument(a).1);
     quote! {
         #(#[doc = #documentation])*
         #[allow(clippy::all)]
         pub fn #name(#(#arguments,)* results: &mut [#of_one]) {
+            #(let mut #blocks = [[0.0; LANES]; #sizes];)*
             let mut block = #zero;
             for (#pattern, results) in #first.chunks(LANES) #(#chunks)* .zip(results.chunks_mut(LANES)) {
-                lanes::#name(#(&gather(#names),)* &mut block);
-                for (result, k) in results.iter_mut().zip(0 .. #first.len() #(#lengths)*) {
-                    #scatter
+                #(gather(#names, &mut #blocks);)*
+                lanes::#name(#(&#blocks,)* &mut block);
+                let count = #first.len() #(#lengths)*;
+                match results.first_chunk_mut::<LANES>() {
+                    Some(results) if count == LANES => {
+                        for k in 0..LANES {
+                            let result = &mut results[k];
+                            #scatter
+                        }
+                    }
+                    _ => {
+                        for (result, k) in results.iter_mut().zip(0..count) {
+                            #scatter
+                        }
+                    }
                 }
             }
         }

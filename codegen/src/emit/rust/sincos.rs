@@ -129,70 +129,76 @@ fn together(asked: &[Asked], scalar: Scalar) -> Vec<TokenStream> {
     lines
 }
 
-/// The lines that give `s1`, `c1` and so on as arrays of lanes, and those in the loop over lanes `k` that give the numbers.
+/// The lines that give the sines and cosines of all angles as arrays of lanes, and those in the loop over lanes `k` that name them `s1`, `c1` and so on.
 pub(super) fn lines_of_lanes(module: &Module, function: &Function) -> (Vec<TokenStream>, Vec<TokenStream>) {
-    let (mut before, mut inside) = (Vec::new(), Vec::new());
     let turn = turn_of(module);
-    for asked in asked(&function.symbols(), turn.as_ref()) {
-        let (first, lanes) = (asked.first(), asked.angle.terms.len());
-        let added: Vec<TokenStream> = asked
-            .more()
-            .into_iter()
-            .enumerate()
-            .map(|(k, (minus, term))| {
-                let term = if k + 1 < lanes { quote!(#term[k]) } else { term };
-                if minus {
-                    quote!(angle[k] -= #term;)
-                } else {
-                    quote!(angle[k] += #term;)
-                }
-            })
-            .collect();
-        let Asked { sine, cosine, .. } = asked;
-        if added.is_empty() {
-            before.push(quote!(let (#sine, #cosine) = sin_cos_lanes(&#first);));
-        } else {
-            before.extend([
-                quote!(let mut angle = #first;),
-                quote!(for k in 0..LANES { #(#added)* }),
-                quote!(let (#sine, #cosine) = sin_cos_lanes(&angle);),
-            ]);
-        }
-        let used = [sine, cosine].into_iter().filter(|name| name.to_string() != "_");
-        inside.extend(used.map(|name| quote!(let #name = #name[k];)));
+    let asked = asked(&function.symbols(), turn.as_ref());
+    if asked.is_empty() {
+        return (Vec::new(), Vec::new());
     }
+    let (mut added, mut inside) = (Vec::new(), Vec::new());
+    for (at, asked) in asked.iter().enumerate() {
+        let (at, joints) = (usize_literal(at), asked.angle.terms.len());
+        for ((minus, term), i) in asked.more().into_iter().zip(1..) {
+            let term = if i < joints { quote!(#term[k]) } else { term };
+            added.push(if minus { quote!(angles[#at][k] -= #term;) } else { quote!(angles[#at][k] += #term;) });
+        }
+        for (name, from) in [(&asked.sine, quote!(sines)), (&asked.cosine, quote!(cosines))] {
+            if name.to_string() != "_" {
+                inside.push(quote!(let #name = #from[#at][k];));
+            }
+        }
+    }
+    let (first, count) = (asked.iter().map(Asked::first), usize_literal(asked.len()));
+    let mut before = if added.is_empty() {
+        vec![quote!(let angles = [#(#first),*];)]
+    } else {
+        vec![quote!(let mut angles = [#(#first),*];), quote!(for k in 0..LANES { #(#added)* })]
+    };
+    before.push(quote!(let mut waves = Aligned([[[0.0; LANES]; #count]; 2]);));
+    before.push(quote!(let [sines, cosines] = &mut waves.0;));
+    before.push(quote!(sin_cos_lanes(&angles, sines, cosines);));
     (before, inside)
 }
 
-/// The private function that those lines call.
+/// The private function that those lines call. It takes all angles of a function, so that the processor computes those of one while it waits for
+/// another's. Results by reference save a copy, and the range is tested apart, since a test for each angle would be a step of each sine.
 pub(super) fn of_lanes(module: &Module) -> TokenStream {
-    let body = match module.trig {
-        Trig::Fast => quote! {
-            let mut inside = true;
-            for k in 0..LANES {
-                (sines[k], cosines[k]) = sin_cos(x[k]);
-                inside &= x[k].abs() <= SIN_COS_RANGE;
-            }
-            if !inside {
+    let each = |function: &TokenStream| {
+        quote! {
+            for ((x, sines), cosines) in x.iter().zip(sines.iter_mut()).zip(cosines.iter_mut()) {
                 for k in 0..LANES {
-                    (sines[k], cosines[k]) = sin_cos_one(x[k]);
+                    (sines[k], cosines[k]) = #function(x[k]);
                 }
             }
-        },
-        Trig::Libm | Trig::Std => quote! {
-            for k in 0..LANES {
-                (sines[k], cosines[k]) = sin_cos(x[k]);
-            }
-        },
+        }
     };
+    let all = each(&quote!(sin_cos));
+    let beyond = (module.trig == Trig::Fast).then(|| {
+        let one = each(&quote!(sin_cos_one));
+        // As wide as the scalar: comparisons in vectors are.
+        let bits = match module.scalar {
+            Scalar::F64 => quote!(u64),
+            Scalar::F32 => quote!(u32),
+        };
+        quote! {
+            let beyond = |x: &Real| #bits::from(!(x.abs() <= SIN_COS_RANGE));
+            if x.as_flattened().iter().fold(0, |any, x| any | beyond(x)) != 0 {
+                #one
+            }
+        }
+    });
     quote! {
-        /// Sines and cosines of one angle of each state, rad.
+        /// Begins with a line of the cache, as does then the stack of a function that holds it: no vector there lies in two lines.
+        #[repr(align(64))]
+        struct Aligned<T>(T);
+
+        /// Sines and cosines of angles of each state, rad.
         #[allow(clippy::all)]
         #[inline(never)]
-        fn sin_cos_lanes(x: &Lanes) -> (Lanes, Lanes) {
-            let (mut sines, mut cosines) = ([0.0; LANES], [0.0; LANES]);
-            #body
-            (sines, cosines)
+        fn sin_cos_lanes(x: &[Lanes], sines: &mut [Lanes], cosines: &mut [Lanes]) {
+            #all
+            #beyond
         }
     }
 }

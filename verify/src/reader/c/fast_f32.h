@@ -1,7 +1,12 @@
 /* Vectors of angles where the processor has them, single angles elsewhere. */
 #if defined(__GNUC__) && !defined(__CUDACC__) && !defined(__HIPCC__) && (defined(__SSE2__) || defined(__aarch64__) || defined(__wasm_simd128__))
+#if defined(__AVX2__)
+#define ROBOT_VECTOR_LANES 8
+#define ROBOT_VECTOR_AT(from) {(from)[0], (from)[1], (from)[2], (from)[3], (from)[4], (from)[5], (from)[6], (from)[7]}
+#else
 #define ROBOT_VECTOR_LANES 4
 #define ROBOT_VECTOR_AT(from) {(from)[0], (from)[1], (from)[2], (from)[3]}
+#endif
 typedef robot_real robot_vector __attribute__((vector_size(ROBOT_VECTOR_LANES * sizeof(robot_real))));
 typedef int robot_mask __attribute__((vector_size(ROBOT_VECTOR_LANES * sizeof(robot_real))));
 #define ROBOT_CHOOSE(test, then, otherwise) \
