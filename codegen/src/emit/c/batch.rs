@@ -86,7 +86,7 @@ impl C<'_> {
         if !waves.is_empty() {
             // Filled up to whole vectors; zeros where the lanes of an angle are no whole vectors.
             let vector = most_lanes(module.scalar);
-            let fits = |n: &usize| vector % n == 0 && module.batch.is_some_and(|lanes| lanes % n == 0);
+            let fits = |n: &usize| vector.is_multiple_of(*n) && module.batch.is_some_and(|lanes| lanes % n == 0);
             let step = vector / (1..=vector).rev().find(fits).unwrap_or(1);
             let shape = format!("[{}][{upper}_LANES]", waves.len().next_multiple_of(step));
             let zeros = if step > 1 { " = {{0}}" } else { "" };
