@@ -29,7 +29,6 @@ pub mod turn;
 mod calculus;
 mod constants;
 pub mod count;
-mod dependence;
 mod evaluate;
 
 use std::collections::{BTreeMap, BTreeSet, HashMap};

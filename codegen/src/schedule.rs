@@ -98,14 +98,13 @@ fn joint(joint: &manipulator::Joint) -> Joint {
 fn function(model: &Model, quantity: &'static Quantity, with_parameters: bool, options: &Options) -> Function {
     let view = if with_parameters { View::Vector(&model.parameters) } else { View::Nominal };
     let without = options.without;
-    let recursion = quantity.by_search(model, view, without, EFFORT).without_cancelled_variables();
+    let recursion = quantity.by_search(model, view, without, EFFORT);
     let closed = if without.contains(Pass::ClosedForm) { Vec::new() } else { recursion.by_closed_form() };
     // A closed form that is far longer than the recursion does not become shorter than it.
     let operations = |of: &Derivation| of.pool.operations(&of.pool.with_gravity(&of.entries).0, DIVISION_COST);
     let most = CLOSED_FORM_FACTOR * operations(&recursion);
     closed
         .into_iter()
-        .map(Derivation::without_cancelled_variables)
         .filter(|closed| operations(closed) <= most)
         .chain([recursion])
         .map(|derivation| {

@@ -6,6 +6,8 @@ use std::path::{Path, PathBuf};
 
 use armgen_tests::random::Random;
 
+// A crate of its own in tests/fuzz.
+#[allow(unreachable_pub)]
 #[path = "../fuzz/src/lib.rs"]
 mod fuzz;
 

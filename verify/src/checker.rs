@@ -323,25 +323,19 @@ impl Checker {
         };
         let rational = |mut tower: Tower| {
             let wanted = Wanted { base: BaseParameters::Kept, pivots: false };
-            let found = tower.within_limits(|tower| {
-                let reference = Reference::new(tower, &manipulator, &vector, wanted)?;
-                let samples = base.as_ref().and_then(|_| Samples::torques(&reference));
-                Ok::<_, String>((reference, samples))
-            });
-            found.transpose().map(|found| {
-                found.map(|(reference, base)| Point { arithmetic: tower, reference, base, constants: Mutex::default() })
-            })
+            let reference = Reference::new(&mut tower, &manipulator, &vector, wanted)?;
+            let samples = base.as_ref().and_then(|_| Samples::torques(&reference));
+            Ok::<_, String>(Point { arithmetic: tower, reference, base: samples, constants: Mutex::default() })
         };
         let drawn = parallel_map(&fields, |field| match field {
-            Drawn::Modular(field) => modular(field.clone()).map(|point| Some(Drawn::Modular(point))),
-            Drawn::Exact(tower) => rational(tower.clone()).map(|point| point.map(Drawn::Exact)),
+            Drawn::Modular(field) => modular(field.clone()).map(Drawn::Modular),
+            Drawn::Exact(tower) => rational(tower.clone()).map(Drawn::Exact),
         });
         let (mut points, mut exact) = (Vec::new(), Vec::new());
         for point in drawn {
             match point? {
-                Some(Drawn::Modular(point)) => points.push(point),
-                Some(Drawn::Exact(point)) => exact.push(point),
-                None => {}
+                Drawn::Modular(point) => points.push(point),
+                Drawn::Exact(point) => exact.push(point),
             }
         }
         let sizes = sizes(&manipulator, &vector, base.as_ref());

@@ -38,18 +38,6 @@ impl Derivation {
         self.pool.all_normal_forms(&self.entries, CLOSED_FORM_TERMS)
     }
 
-    /// The same without the variables that no entry depends on.
-    pub fn without_cancelled_variables(self) -> Derivation {
-        let (all, joints) = self.pool.with_gravity(&self.entries);
-        match self.pool.without_cancelled_variables(&all) {
-            Some((mut pool, mut entries)) => {
-                pool.take_gravity(&mut entries, &joints);
-                Derivation { pool, entries, ..self }
-            }
-            None => self,
-        }
-    }
-
     /// The derivations from the closed form, if it exists: one for each order of its products, and the same in the rates of links
     /// about parallel axes.
     pub fn by_closed_form(&self) -> Vec<Derivation> {

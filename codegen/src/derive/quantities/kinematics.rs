@@ -5,9 +5,6 @@
 //! J_Pi = z_i × (p_e - p_i), J_Oi = z_i (revolute);   J_Pi = z_i, J_Oi = 0 (prismatic)   (the book, eq. 3.30)
 //! dz_i/dt = omega_i × z_i,   d(p_e - p_i)/dt = v_e - v_i
 //! ```
-//!
-//! A lever arm p_e - p_i is the sum of the offsets from the end effector inwards to joint i. As a difference of positions it would contain the slides
-//! before joint i, which cancel and take digits with them.
 
 use crate::derive::arm::Arm;
 use crate::derive::passes::RewriteScope;
@@ -158,51 +155,15 @@ pub struct Frames {
 
 /// Joint frames of all links.
 pub fn frames(pool: &mut Pool, arm: &Arm) -> Frames {
-    let chain = Chain::new(pool, arm);
     let mut joints: Vec<(Matrix, Vector)> = Vec::with_capacity(arm.dof());
-    for (i, joint) in arm.joints.iter().enumerate() {
-        let base = joint.parent.map_or(ZERO, |p| joints[p].1);
-        joints.push((chain.orientations[i], pool.add_vectors(&base, &chain.offsets[i])));
+    for joint in &arm.joints {
+        let (outer, base) = joint.parent.map_or((IDENTITY, ZERO), |p| joints[p]);
+        let rotation = joint.rotation(pool);
+        let shift = pool.transform(&outer, &joint.origin);
+        let frame = (pool.product(&outer, &rotation), pool.add_vectors(&base, &shift));
+        joints.push(frame);
     }
     Frames { joints }
-}
-
-/// Orientations of joint frames, and the vectors to their origins from those of the parents' frames, in the base frame.
-struct Chain {
-    orientations: Vec<Matrix>,
-    offsets: Vec<Vector>,
-}
-
-impl Chain {
-    fn new(pool: &mut Pool, arm: &Arm) -> Chain {
-        let mut orientations: Vec<Matrix> = Vec::with_capacity(arm.dof());
-        let mut offsets = Vec::with_capacity(arm.dof());
-        for joint in &arm.joints {
-            let outer = joint.parent.map_or(IDENTITY, |p| orientations[p]);
-            let rotation = joint.rotation(pool);
-            offsets.push(pool.transform(&outer, &joint.origin));
-            orientations.push(pool.product(&outer, &rotation));
-        }
-        Chain { orientations, offsets }
-    }
-
-    /// The axis of joint i.
-    fn axis(&self, i: usize) -> Vector {
-        self.orientations[i].map(|row| row[2])
-    }
-
-    /// The lever arms of a point fixed in joint frame `link`: from the origin of each frame between the link and the base to the point, the link first.
-    fn lever_arms(&self, pool: &mut Pool, arm: &Arm, link: usize, point: &Vector) -> Vec<(usize, Vector)> {
-        let mut lever_arm = pool.transform(&self.orientations[link], point);
-        let mut all = vec![(link, lever_arm)];
-        let mut beyond = link;
-        while let Some(i) = arm.joints[beyond].parent {
-            lever_arm = pool.add_vectors(&self.offsets[beyond], &lever_arm);
-            all.push((i, lever_arm));
-            beyond = i;
-        }
-        all
-    }
 }
 
 /// A frame fixed in joint frame i, in the base frame.
@@ -234,19 +195,26 @@ pub fn link_frames(pool: &mut Pool, arm: &Arm) -> Vec<Vec<Vec<ExprId>>> {
         .collect()
 }
 
+fn z(frame: &(Matrix, Vector)) -> Vector {
+    [0, 1, 2].map(|row| frame.0[row][2])
+}
+
 /// J(q): six rows, linear then angular.
 pub fn geometric_jacobian(pool: &mut Pool, arm: &Arm) -> Vec<Vec<ExprId>> {
-    let chain = Chain::new(pool, arm);
-    jacobian_of_point(pool, arm, &chain, arm.tip, &arm.tool_origin)
+    let frames = frames(pool, arm);
+    jacobian_of_point(pool, arm, &frames, arm.tip, &arm.tool_origin)
 }
 
 /// The geometric Jacobian of a point fixed in joint frame `link`: six rows, linear then angular.
-fn jacobian_of_point(pool: &mut Pool, arm: &Arm, chain: &Chain, link: usize, point: &Vector) -> Vec<Vec<ExprId>> {
+fn jacobian_of_point(pool: &mut Pool, arm: &Arm, frames: &Frames, link: usize, point: &Vector) -> Vec<Vec<ExprId>> {
+    let shift = pool.transform(&frames.joints[link].0, point);
+    let end = pool.add_vectors(&frames.joints[link].1, &shift);
     let mut jacobian = vec![vec![ExprId::ZERO; arm.dof()]; 6];
-    for (i, lever_arm) in chain.lever_arms(pool, arm, link, point) {
-        let axis = chain.axis(i);
+    for i in arm.path_to(link) {
+        let axis = z(&frames.joints[i]);
         if arm.joints[i].is_revolute() {
-            let linear = pool.cross(&axis, &lever_arm);
+            let arm_to_end = pool.sub_vectors(&end, &frames.joints[i].1);
+            let linear = pool.cross(&axis, &arm_to_end);
             set_column(&mut jacobian, i, &linear, &axis);
         } else {
             set_column(&mut jacobian, i, &axis, &ZERO);
@@ -257,9 +225,9 @@ fn jacobian_of_point(pool: &mut Pool, arm: &Arm, chain: &Chain, link: usize, poi
 
 /// J_i(q) of the origin of every link frame: six rows each, linear then angular.
 pub fn link_jacobians(pool: &mut Pool, arm: &Arm) -> Vec<Vec<Vec<ExprId>>> {
-    let chain = Chain::new(pool, arm);
+    let frames = frames(pool, arm);
     let links = arm.joints.iter().enumerate();
-    links.map(|(i, joint)| jacobian_of_point(pool, arm, &chain, i, &joint.link_origin)).collect()
+    links.map(|(i, joint)| jacobian_of_point(pool, arm, &frames, i, &joint.link_origin)).collect()
 }
 
 fn set_column(jacobian: &mut [Vec<ExprId>], column: usize, linear: &Vector, angular: &Vector) {
@@ -271,36 +239,40 @@ fn set_column(jacobian: &mut [Vec<ExprId>], column: usize, linear: &Vector, angu
 
 /// dJ/dt(q, dq): six rows, linear then angular.
 pub fn geometric_jacobian_dot(pool: &mut Pool, arm: &Arm) -> Vec<Vec<ExprId>> {
-    let chain = Chain::new(pool, arm);
+    let frames = frames(pool, arm);
     let rates = arm.symbols(pool, Symbol::Rate);
-    let lever_arms = chain.lever_arms(pool, arm, arm.tip, &arm.tool_origin);
+    let path = arm.path_to(arm.tip);
+    let shift = pool.transform(&frames.joints[arm.tip].0, &arm.tool_origin);
+    let end = pool.add_vectors(&frames.joints[arm.tip].1, &shift);
     // Angular velocity of each link on the path and rate of each axis, from the base; linear velocity of the end effector relative to each joint's
     // origin, from the tip down.
     let (mut omega, mut axis_rates) = (vec![ZERO; arm.dof()], vec![ZERO; arm.dof()]);
     let mut before = ZERO;
-    for &(i, _) in lever_arms.iter().rev() {
+    for &i in &path {
         // The axis is fixed to the link before it, too, whose motion does not include the joint's own rate.
-        axis_rates[i] = pool.cross(&before, &chain.axis(i));
-        let spin = if arm.joints[i].is_revolute() { pool.scale(rates[i], &chain.axis(i)) } else { ZERO };
+        axis_rates[i] = pool.cross(&before, &z(&frames.joints[i]));
+        let spin = if arm.joints[i].is_revolute() { pool.scale(rates[i], &z(&frames.joints[i])) } else { ZERO };
         omega[i] = pool.add_vectors(&before, &spin);
         before = omega[i];
     }
     let mut jacobian = vec![vec![ExprId::ZERO; arm.dof()]; 6];
     let mut outer: Option<usize> = None;
     let mut velocity = ZERO;
-    for (i, lever_arm) in lever_arms {
+    for &i in path.iter().rev() {
         // v_e - v_i grows by what link i carries: omega_i × (to the next origin), and the next joint's slide.
-        let reach = outer.map_or(lever_arm, |k| chain.offsets[k]);
+        let next = outer.map_or(end, |k| frames.joints[k].1);
+        let reach = pool.sub_vectors(&next, &frames.joints[i].1);
         let carried = pool.cross(&omega[i], &reach);
         velocity = pool.add_vectors(&velocity, &carried);
         if let Some(k) = outer.filter(|&k| !arm.joints[k].is_revolute()) {
-            let slide = pool.scale(rates[k], &chain.axis(k));
+            let slide = pool.scale(rates[k], &z(&frames.joints[k]));
             velocity = pool.add_vectors(&velocity, &slide);
         }
-        let axis = chain.axis(i);
+        let axis = z(&frames.joints[i]);
         let axis_rate = axis_rates[i];
         if arm.joints[i].is_revolute() {
-            let (turning, moving) = (pool.cross(&axis_rate, &lever_arm), pool.cross(&axis, &velocity));
+            let to_end = pool.sub_vectors(&end, &frames.joints[i].1);
+            let (turning, moving) = (pool.cross(&axis_rate, &to_end), pool.cross(&axis, &velocity));
             let linear = pool.add_vectors(&turning, &moving);
             set_column(&mut jacobian, i, &linear, &axis_rate);
         } else {
