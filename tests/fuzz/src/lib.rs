@@ -37,7 +37,8 @@ pub fn check_diagnostics(source: &Source, diagnostics: &Diagnostics) {
 pub fn check_import(name: &str, data: &[u8]) {
     let source = Source::new(name, String::from_utf8_lossy(data));
     for snap in [0.0, Options::SNAP] {
-        let (imported, diagnostics) = import(&source, &Options { snap, massless: data.len().is_multiple_of(2), ..Options::default() });
+        let (imported, diagnostics) =
+            import(&source, &Options { snap, massless: data.len().is_multiple_of(2), ..Options::default() });
         assert_eq!(imported.is_some(), !diagnostics.has_errors());
         check_diagnostics(&source, &diagnostics);
         let Some(imported) = imported else { continue };
