@@ -9,7 +9,7 @@ use armgen_tests::random::Random;
 // A crate of its own in tests/fuzz.
 #[allow(unreachable_pub)]
 #[path = "../fuzz/src/lib.rs"]
-mod fuzz;
+pub(crate) mod fuzz;
 
 /// The longest input, as in tests/fuzz/run.
 const LONGEST: usize = 8192;

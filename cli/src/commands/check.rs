@@ -21,6 +21,7 @@ use armgen_codegen::schedule::Options;
 use armgen_codegen::source::Source;
 use armgen_codegen::{derive, inverse_kinematics, validate, Model};
 
+use crate::number::without_zeros;
 use crate::table::{Align, Table};
 use crate::{input, terminal, DONE, FAULTY};
 
@@ -279,15 +280,10 @@ fn digits(value: f64) -> String {
     if !(1e-4..1e6).contains(&size) {
         let text = format!("{value:.5e}");
         let (digits, exponent) = text.split_once('e').expect("the exponent was asked for");
-        let digits = if digits.contains('.') { digits.trim_end_matches('0').trim_end_matches('.') } else { digits };
-        return format!("{digits}e{exponent}");
+        return format!("{}e{exponent}", without_zeros(digits));
     }
     let decimals = (5 - size.log10().floor() as i32).max(0) as usize;
-    let text = format!("{value:.decimals$}");
-    match text.contains('.') {
-        true => text.trim_end_matches('0').trim_end_matches('.').to_string(),
-        false => text,
-    }
+    without_zeros(&format!("{value:.decimals$}")).to_owned()
 }
 
 #[cfg(test)]

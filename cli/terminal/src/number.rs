@@ -12,10 +12,14 @@ pub fn short(value: f64, digits: usize) -> String {
     if !(-4.0..9.0).contains(&size) {
         return format!("{value:.after_first$e}");
     }
-    let text = format!("{value:.*}", (after_first as f64 - size).max(0.0) as usize);
-    match text.contains('.') {
-        true => text.trim_end_matches('0').trim_end_matches('.').to_owned(),
-        false => text,
+    without_zeros(&format!("{value:.*}", (after_first as f64 - size).max(0.0) as usize)).to_owned()
+}
+
+/// A decimal without the zeros at its end.
+pub fn without_zeros(decimal: &str) -> &str {
+    match decimal.contains('.') {
+        true => decimal.trim_end_matches('0').trim_end_matches('.'),
+        false => decimal,
     }
 }
 

@@ -223,7 +223,7 @@ fn pieces<const N: usize>(samples: &Samples) -> Vec<Piece<f64, N>> {
             match (dq, ddq) {
                 (Some(dq), Some(ddq)) => {
                     let (v, w, a, b) = (dq[joint][i], dq[joint][i + 1], ddq[joint][i], ddq[joint][i + 1]);
-                    // What is left of q, dq, ddq at the end when the first four coefficients are there.
+                    // What is left of q, dq, ddq at the end when the first three coefficients are there.
                     let rest = (chord - v) / h - 0.5 * a;
                     let rate = (w - v) / h - a;
                     c[1] = v;

@@ -3,7 +3,6 @@
 use std::fmt::Write as _;
 use std::time::Duration;
 
-use crate::number;
 use armgen_runtime::timing::{Limit, Piece, Profile, Timing, UpperBound};
 use armgen_runtime::trajectory::Progress;
 use armgen_terminal::table::{Align, Table};
@@ -12,6 +11,7 @@ use serde_json::{json, Value};
 
 use super::arm::Arm;
 use super::{Curve, Job};
+use crate::number;
 
 /// So many samples has a file at most.
 pub(super) const SAMPLES: f64 = 1e7;
