@@ -49,7 +49,7 @@ pub(crate) fn say(functions: &mut [FunctionReport], module: &Module, checker: &C
     let arguments = Arguments { pi: drawn.pi.clone(), ..drawn.map(thousandths) };
     let state = state(&arguments, checker.manipulator());
     let wanted = Wanted { base: BaseParameters::LeftOut, pivots: false };
-    let Ok(equations) = base::values_in_numbers(&mut Floats, checker.manipulator(), checker.vector(), None, state, wanted) else {
+    let Ok(equations) = base::values(&mut Floats, checker.manipulator(), checker.vector(), None, state, wanted) else {
         return;
     };
     for function in functions {

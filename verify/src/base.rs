@@ -143,31 +143,19 @@ pub fn values<K: Arithmetic>(
     named: Option<&[(Standard, bool)]>,
     state: State<K::Element>,
     wanted: Wanted,
-) -> Result<Values<K::Element>, String> {
-    let mut values = Reference::at(arithmetic, manipulator, vector, state.clone(), wanted)?.values;
-    if let Some(named) = named {
-        let arm = Arm::nominal(arithmetic, manipulator).and_then(|names| Arm::new(arithmetic, manipulator, &names));
-        let arm = arm.ok_or("a constant of the description divides by zero")?.under(&state.g0);
-        values.insert(BASE_REGRESSOR.into(), sums_of_kinds(&arm, &state, named));
-    }
-    Ok(values)
-}
-
-/// The same, compiled once for all arithmetics of a [`Number`](crate::number::Number).
-pub fn values_in_numbers<K: Arithmetic>(
-    arithmetic: &mut K,
-    manipulator: &Manipulator,
-    vector: &Vector,
-    named: Option<&[(Standard, bool)]>,
-    state: State<K::Element>,
-    wanted: Wanted,
 ) -> Result<Values<K::Element>, String>
 where
     K::Element: Member,
 {
     let mut erased = Erased(arithmetic);
     let mut numbers: Numbers<'_> = &mut erased;
-    let values = values(&mut numbers, manipulator, vector, named, state.map(&Member::into_number), wanted)?;
+    let state = state.map(&Member::into_number);
+    let mut values = Reference::at(&mut numbers, manipulator, vector, state.clone(), wanted)?.values;
+    if let Some(named) = named {
+        let arm = Arm::nominal(&numbers, manipulator).and_then(|names| Arm::new(&numbers, manipulator, &names));
+        let arm = arm.ok_or("a constant of the description divides by zero")?.under(&state.g0);
+        values.insert(BASE_REGRESSOR.into(), sums_of_kinds(&arm, &state, named));
+    }
     Ok(values.into_iter().map(|(name, entries)| (name, entries.into_iter().map(Member::of).collect())).collect())
 }
 

@@ -222,7 +222,7 @@ pub struct Checker {
     vector: Vector,
     claims: Claims,
     points: Vec<Point<Prime>>,
-    exact: Vec<Point<Tower>>,
+    exact: Vec<Point<Erased<Tower>>>,
     /// log2 of the odds of a miss by function, for all points in prime fields together.
     log2_odds: BTreeMap<String, f64>,
     base: Option<OwnParameters>,
@@ -321,11 +321,13 @@ impl Checker {
             };
             Ok::<_, String>(Point { arithmetic: field, reference, base: samples, constants: Mutex::default() })
         };
-        let rational = |mut tower: Tower| {
+        let rational = |tower: Tower| {
             let wanted = Wanted { base: BaseParameters::Kept, pivots: false };
-            let reference = Reference::new(&mut tower, &manipulator, &vector, wanted)?;
+            let mut arithmetic = Erased(tower);
+            let mut numbers: Numbers<'_> = &mut arithmetic;
+            let reference = Reference::new(&mut numbers, &manipulator, &vector, wanted)?;
             let samples = base.as_ref().and_then(|_| Samples::torques(&reference));
-            Ok::<_, String>(Point { arithmetic: tower, reference, base: samples, constants: Mutex::default() })
+            Ok::<_, String>(Point { arithmetic, reference, base: samples, constants: Mutex::default() })
         };
         let drawn = parallel_map(&fields, |field| match field {
             Drawn::Modular(field) => modular(field.clone()).map(Drawn::Modular),

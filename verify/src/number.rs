@@ -1,13 +1,16 @@
 //! A number of one of several arithmetics, told at run time.
 //!
-//! The equations are compiled once for each type that they are executed in. Arithmetics in which few states are looked at share this one;
-//! exact ones and floats with errors, in which the time of a verification is spent, have their own.
+//! The equations are compiled once for each type that they are executed in: for integers modulo a prime, which most points are drawn in, and
+//! for this one, which all other arithmetics share.
 
 use crate::arithmetic::degree::Degree;
+use crate::arithmetic::running::Running;
+use crate::arithmetic::tower::Surd;
 use crate::arithmetic::wide::Wide;
 use crate::arithmetic::Arithmetic;
 use crate::element::Element;
 use crate::formula::Formula;
+use crate::ranges::Range;
 
 /// What a [`Number`] can be.
 pub trait Member: Element {
@@ -96,15 +99,18 @@ members! {
     Float: f64,
     Wide: Wide,
     Degree: Degree,
+    Surd: Surd,
+    Range: Range,
+    Running: Running,
 }
 
 /// An arithmetic whose elements are handed out as numbers.
-pub struct Erased<'a, K>(pub &'a mut K);
+pub struct Erased<K>(pub K);
 
 /// Any of them.
 pub type Numbers<'a> = &'a mut dyn Arithmetic<Element = Number>;
 
-impl<K: Arithmetic> Arithmetic for Erased<'_, K>
+impl<K: Arithmetic> Arithmetic for Erased<K>
 where
     K::Element: Member,
 {

@@ -18,6 +18,7 @@ use crate::equations::parameters::Vector;
 use crate::equations::state::State;
 use crate::float::{stribeck, stribeck_error, Arguments, LANES};
 use crate::formula::Formula;
+use crate::number::Member;
 use crate::ranges::{Domain, Range};
 use crate::reference::{BaseParameters, Values, Wanted};
 
@@ -43,7 +44,10 @@ pub struct Plain<'a> {
 
 impl Plain<'_> {
     /// All functions in an arithmetic that gives `pi` where it draws.
-    fn values<K: Arithmetic>(&self, numbers: &mut K, state: State<K::Element>) -> Option<Values<K::Element>> {
+    fn values<K: Arithmetic>(&self, numbers: &mut K, state: State<K::Element>) -> Option<Values<K::Element>>
+    where
+        K::Element: Member,
+    {
         let wanted = Wanted { base: BaseParameters::Kept, pivots: false };
         let named = self.base.map(|base| base.named.as_slice());
         base::values(numbers, self.manipulator, self.vector, named, state, wanted).ok()

@@ -129,7 +129,7 @@ impl Kit {
             let arguments = arguments(&mut stream, &sizes);
             let state = wide_state(&arguments, manipulator).ok_or("a joint variable out of reach")?;
             let wanted = Wanted { base: BaseParameters::LeftOut, pivots: false };
-            let equations = base::values_in_numbers(&mut fine, manipulator, &vector, None, state, wanted)?;
+            let equations = base::values(&mut fine, manipulator, &vector, None, state, wanted)?;
             for (name, entries) in equations.iter().filter(|(name, _)| present(name)) {
                 // The residual judges forward dynamics.
                 let Some((promise, with)) = Promise::of(name).filter(|(promise, _)| promise.name != "forward_dynamics") else {

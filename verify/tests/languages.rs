@@ -5,6 +5,8 @@
 //! `cargo test --release -p armgen-verify --test all -- --ignored --nocapture all_robots_have_the_bits_of_rust`.
 
 use crate::common;
+#[path = "languages/arrays.rs"]
+mod arrays;
 #[path = "../../tests/src/installed.rs"]
 mod installed;
 #[path = "languages/mutation.rs"]
@@ -261,37 +263,37 @@ fn a_package_is_called_as_its_help_says() {
 #[test]
 #[ignore = "wide"]
 fn arrays_need_the_array_api_and_no_more() {
-    page::check_array_api();
+    arrays::check_array_api();
 }
 
 #[test]
 #[ignore = "wide"]
 fn entries_of_another_type_are_told_what_is_taken() {
-    page::check_other_types();
+    arrays::check_other_types();
 }
 
 #[test]
 #[ignore = "wide"]
 fn torch_has_the_bits_of_numpy_and_its_derivatives() {
-    page::check_torch();
+    arrays::check_torch();
 }
 
 #[test]
 #[ignore = "wide"]
 fn torch_compiles_functions_whole() {
-    page::check_torch_compile();
+    arrays::check_torch_compile();
 }
 
 #[test]
 #[ignore = "wide"]
 fn jax_compiles_and_differentiates_functions() {
-    page::check_jax_jit();
+    arrays::check_jax_jit();
 }
 
 #[test]
 #[ignore = "wide"]
 fn functions_by_joint_have_the_bits_of_numpy() {
-    page::check_by_joint();
+    arrays::check_by_joint();
 }
 
 #[test]

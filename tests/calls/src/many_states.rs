@@ -73,7 +73,7 @@ fn call(function: &ItemFn, module: impl ToTokens) -> impl ToTokens {
         match (slice, reference.mutability.is_some()) {
             (true, true) => quote!(core::hint::black_box::<&mut [_]>(&mut [Zero::ZERO; 2 * lanes::LANES + 1])),
             (true, false) => quote!(core::hint::black_box::<&[_]>(&[Zero::ZERO; 2 * lanes::LANES + 1])),
-            (false, true) => quote!(core::hint::black_box(&mut Zero::ZERO)),
+            (false, true) => quote!(core::hint::black_box(&mut { Zero::ZERO })),
             (false, false) => quote!(core::hint::black_box(&Zero::ZERO)),
         }
     });
