@@ -29,6 +29,7 @@ pub mod turn;
 mod calculus;
 mod constants;
 pub mod count;
+mod dependence;
 mod evaluate;
 
 use std::collections::{BTreeMap, BTreeSet, HashMap};

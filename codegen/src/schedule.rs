@@ -103,18 +103,23 @@ fn function(model: &Model, quantity: &'static Quantity, with_parameters: bool, o
     // A closed form that is far longer than the recursion does not become shorter than it.
     let operations = |of: &Derivation| of.pool.operations(&of.pool.with_gravity(&of.entries).0, DIVISION_COST);
     let most = CLOSED_FORM_FACTOR * operations(&recursion);
+    let optimised =
+        |derivation: Derivation| match optimise(&derivation.pool, &derivation.entries, &derivation.parallel, &without.rewrites())
+        {
+            Some((pool, entries)) => Derivation { pool, entries, ..derivation },
+            None => derivation,
+        };
     closed
         .into_iter()
         .filter(|closed| operations(closed) <= most)
         .chain([recursion])
-        .map(|derivation| {
-            let fewer = optimise(&derivation.pool, &derivation.entries, &derivation.parallel, &without.rewrites());
-            let derivation = match fewer {
-                Some((pool, entries)) => Derivation { pool, entries, ..derivation },
-                None => derivation,
-            };
-            lower(model, quantity, with_parameters, &derivation)
+        .map(optimised)
+        // Most variables that cancel are gone by now. Without those that are left there is more to optimise.
+        .map(|derivation| match derivation.without_cancelled_variables() {
+            Some(rest) => optimised(rest),
+            None => derivation,
         })
+        .map(|derivation| lower(model, quantity, with_parameters, &derivation))
         .min_by_key(|function| Cost::of(function).weight())
         .map(|function| Function { fuse: options.fuse, ..function })
         .expect("there is at least the recursion")

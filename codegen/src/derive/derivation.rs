@@ -38,6 +38,14 @@ impl Derivation {
         self.pool.all_normal_forms(&self.entries, CLOSED_FORM_TERMS)
     }
 
+    /// The same without the variables that no entry depends on; `None` where there are no such variables.
+    pub fn without_cancelled_variables(&self) -> Option<Derivation> {
+        let (all, joints) = self.pool.with_gravity(&self.entries);
+        let (mut pool, mut entries) = self.pool.without_cancelled_variables(&all)?;
+        pool.take_gravity(&mut entries, &joints);
+        Some(Derivation { pool, entries, ..self.clone() })
+    }
+
     /// The derivations from the closed form, if it exists: one for each order of its products, and the same in the rates of links
     /// about parallel axes.
     pub fn by_closed_form(&self) -> Vec<Derivation> {
