@@ -321,23 +321,27 @@ impl Checker {
             };
             Ok::<_, String>(Point { arithmetic: field, reference, base: samples, constants: Mutex::default() })
         };
-        let rational = |tower: Tower| {
+        let rational = |mut tower: Tower| {
             let wanted = Wanted { base: BaseParameters::Kept, pivots: false };
-            let mut arithmetic = Erased(tower);
-            let mut numbers: Numbers<'_> = &mut arithmetic;
-            let reference = Reference::new(&mut numbers, &manipulator, &vector, wanted)?;
-            let samples = base.as_ref().and_then(|_| Samples::torques(&reference));
-            Ok::<_, String>(Point { arithmetic, reference, base: samples, constants: Mutex::default() })
+            let found = tower.within_limits(|tower| {
+                let mut arithmetic = Erased(tower.clone());
+                let mut numbers: Numbers<'_> = &mut arithmetic;
+                let reference = Reference::new(&mut numbers, &manipulator, &vector, wanted)?;
+                let samples = base.as_ref().and_then(|_| Samples::torques(&reference));
+                Ok::<_, String>(Point { arithmetic, reference, base: samples, constants: Mutex::default() })
+            });
+            found.transpose()
         };
         let drawn = parallel_map(&fields, |field| match field {
-            Drawn::Modular(field) => modular(field.clone()).map(Drawn::Modular),
-            Drawn::Exact(tower) => rational(tower.clone()).map(Drawn::Exact),
+            Drawn::Modular(field) => modular(field.clone()).map(|point| Some(Drawn::Modular(point))),
+            Drawn::Exact(tower) => rational(tower.clone()).map(|point| point.map(Drawn::Exact)),
         });
         let (mut points, mut exact) = (Vec::new(), Vec::new());
         for point in drawn {
             match point? {
-                Drawn::Modular(point) => points.push(point),
-                Drawn::Exact(point) => exact.push(point),
+                Some(Drawn::Modular(point)) => points.push(point),
+                Some(Drawn::Exact(point)) => exact.push(point),
+                None => {}
             }
         }
         let sizes = sizes(&manipulator, &vector, base.as_ref());

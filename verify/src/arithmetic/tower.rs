@@ -4,6 +4,7 @@
 //! (x + y√a)(u + v√a) = (xu + yv a) + (xv + yu)√a. Roots that follow from others are no levels of their own ([`super::roots`]).
 
 use std::collections::BTreeMap;
+use std::sync::atomic::{AtomicU64, Ordering};
 use std::sync::Arc;
 
 use dashu_base::{BitTest, Signed};
@@ -14,15 +15,35 @@ use crate::formula::definitions::Defined;
 use crate::formula::{root_from_coprime, Atoms, Dependent, Formula, Rational, Root};
 use crate::stream::Stream;
 
-/// The squares of the adjoined roots, each in the coordinates of the field below.
-#[derive(Debug, Default, PartialEq)]
-struct Squares(Vec<Vec<Rational>>);
+/// What all numbers of a tower share.
+#[derive(Debug)]
+struct Shared {
+    /// The squares of the adjoined roots, each in the coordinates of the field below.
+    squares: Vec<Vec<Rational>>,
+    /// How many products of words may still be formed; `UNLIMITED` are never used up.
+    left: AtomicU64,
+}
+
+const UNLIMITED: u64 = u64::MAX;
+
+impl Shared {
+    fn new(squares: Vec<Vec<Rational>>) -> Shared {
+        Shared { squares, left: AtomicU64::new(UNLIMITED) }
+    }
+
+    /// Takes some work from what is left; whether there is enough.
+    fn take(&self, work: u64) -> bool {
+        let less = |left: u64| if left == UNLIMITED { left } else { left.saturating_sub(work) };
+        let left = self.left.fetch_update(Ordering::Relaxed, Ordering::Relaxed, |left| Some(less(left)));
+        left.is_ok_and(|left| less(left) > 0)
+    }
+}
 
 /// A number of the tower.
 #[derive(Clone, Debug)]
 pub struct Surd {
     coordinates: Vec<Rational>,
-    squares: Arc<Squares>,
+    shared: Arc<Shared>,
 }
 
 /// As many roots are adjoined: a product costs up to 4^k products of fractions.
@@ -30,6 +51,9 @@ pub const MOST_ROOTS: usize = 5;
 
 /// And 4^k times the angles of constants are at most so many: each makes the fractions longer.
 const MOST_WORK: usize = 4096;
+
+/// As many products of words are formed to find what a function should be at a rational point.
+const MOST_PRODUCTS: u64 = 1 << 30;
 
 /// Numerator and denominator of the tangents of half the joint angles, of arms of up to eight joints.
 const LONGEST: u64 = 127;
@@ -40,9 +64,14 @@ impl Surd {
         &self.coordinates
     }
 
+    /// Words of 64 bits that its numerators and denominators take.
+    fn words(&self) -> u64 {
+        self.bits() as u64 / 64 + 1
+    }
+
     /// The squares of the adjoined roots.
     pub fn squares(&self) -> &[Vec<Rational>] {
-        &self.squares.0
+        &self.shared.squares
     }
 }
 
@@ -106,22 +135,27 @@ pub(super) fn invert(squares: &[Vec<Rational>], a: &[Rational]) -> Option<Vec<Ra
 
 impl Element for Surd {
     fn plus(&self, other: &Self) -> Self {
-        Surd { coordinates: add(&self.coordinates, &other.coordinates), squares: self.squares.clone() }
+        Surd { coordinates: add(&self.coordinates, &other.coordinates), shared: self.shared.clone() }
     }
     fn minus(&self, other: &Self) -> Self {
         self.plus(&other.negated())
     }
     fn times(&self, other: &Self) -> Self {
-        Surd { coordinates: multiply(&self.squares.0, &self.coordinates, &other.coordinates), squares: self.squares.clone() }
+        let coordinates = if self.shared.take(self.words() * other.words()) {
+            multiply(&self.shared.squares, &self.coordinates, &other.coordinates)
+        } else {
+            vec![Rational::ZERO; self.coordinates.len()]
+        };
+        Surd { coordinates, shared: self.shared.clone() }
     }
     fn bits(&self) -> usize {
         self.coordinates.iter().map(|x| x.numerator().bit_len() + x.denominator().bit_len()).sum()
     }
     fn negated(&self) -> Self {
-        Surd { coordinates: negate(&self.coordinates), squares: self.squares.clone() }
+        Surd { coordinates: negate(&self.coordinates), shared: self.shared.clone() }
     }
     fn inverse(&self) -> Option<Self> {
-        Some(Surd { coordinates: invert(&self.squares.0, &self.coordinates)?, squares: self.squares.clone() })
+        Some(Surd { coordinates: invert(&self.shared.squares, &self.coordinates)?, shared: self.shared.clone() })
     }
     fn sign(&self) -> Self {
         let Some(first) = self.coordinates.iter().find(|x| !x.is_zero()) else { return self.clone() };
@@ -130,7 +164,7 @@ impl Element for Surd {
         let size = 1 + (digits.fold(0, |hash, digit| scrambled(hash ^ u64::from(digit))) % 10_000) as i64;
         let mut coordinates = vec![Rational::ZERO; of.len()];
         coordinates[0] = Rational::from(if first.is_negative() { -size } else { size });
-        Surd { coordinates, squares: self.squares.clone() }
+        Surd { coordinates, shared: self.shared.clone() }
     }
     fn is_zero(&self) -> bool {
         is_zero(&self.coordinates)
@@ -140,7 +174,7 @@ impl Element for Surd {
 /// The tower of a robot, with random fractions for its angles without roots and for pi.
 #[derive(Clone, Debug)]
 pub struct Tower {
-    squares: Arc<Squares>,
+    shared: Arc<Shared>,
     stream: Stream,
     pi: Surd,
     roots: BTreeMap<Root, Surd>,
@@ -160,6 +194,14 @@ impl Tower {
         short.then(|| Tower::with_levels(levels, stream, atoms, dependent, longest)).flatten()
     }
 
+    /// What work finds, if it takes at most `MOST_PRODUCTS`; `None` if it takes more: numbers with many digits and roots grow with every inverse.
+    pub fn within_limits<T>(&mut self, work: impl FnOnce(&mut Tower) -> T) -> Option<T> {
+        self.shared.left.store(MOST_PRODUCTS, Ordering::Relaxed);
+        let found = work(self);
+        let left = self.shared.left.swap(UNLIMITED, Ordering::Relaxed);
+        (left > 0).then_some(found)
+    }
+
     /// The tower of some roots of integers without common factors.
     pub fn of_integers(roots: &[Root]) -> Tower {
         let atoms = Atoms { roots: roots.to_vec(), ..Atoms::default() };
@@ -168,9 +210,9 @@ impl Tower {
 
     fn with_levels(levels: usize, stream: &mut Stream, atoms: &Atoms, dependent: &Dependent, longest: u64) -> Option<Tower> {
         let mut tower = Tower {
-            squares: Arc::new(Squares(Vec::new())),
+            shared: Arc::new(Shared::new(Vec::new())),
             stream: stream.branch(),
-            pi: Surd { coordinates: vec![Rational::ZERO; 1 << levels], squares: Arc::default() },
+            pi: Surd { coordinates: vec![Rational::ZERO; 1 << levels], shared: Arc::new(Shared::new(Vec::new())) },
             roots: BTreeMap::new(),
             angles: BTreeMap::new(),
             defined: Defined::default(),
@@ -178,7 +220,7 @@ impl Tower {
         };
         // The squares are found in the full width, the levels above still without a square of their own, and cut to the level below.
         let mut squares: Vec<Vec<Rational>> = (0..levels).map(|level| vec![Rational::ZERO; 1 << level]).collect();
-        tower.squares = Arc::new(Squares(squares.clone()));
+        tower.shared = Arc::new(Shared::new(squares.clone()));
         tower.pi = tower.draw();
         for angle in &atoms.angles {
             let point = tower.draw_angle();
@@ -194,7 +236,7 @@ impl Tower {
                         Root::Nested(inner) => tower.constant(inner)?,
                     };
                     squares[level] = square.coordinates[..1 << level].to_vec();
-                    tower.renew(Squares(squares.clone()));
+                    tower.renew(squares.clone());
                     let mut unit = tower.integer(0);
                     unit.coordinates[1 << level] = Rational::ONE;
                     level += 1;
@@ -207,17 +249,17 @@ impl Tower {
     }
 
     /// Tells all numbers that are kept what the squares are.
-    fn renew(&mut self, squares: Squares) {
-        self.squares = Arc::new(squares);
+    fn renew(&mut self, squares: Vec<Vec<Rational>>) {
+        self.shared = Arc::new(Shared::new(squares));
         let angles = self.angles.values_mut().flat_map(|(sine, cosine)| [sine, cosine]);
         let all = angles.chain(self.roots.values_mut()).chain([&mut self.pi]);
-        all.for_each(|surd| surd.squares = self.squares.clone());
+        all.for_each(|surd| surd.shared = self.shared.clone());
     }
 
     fn rational(&self, value: &Rational) -> Surd {
-        let mut coordinates = vec![Rational::ZERO; 1 << self.squares.0.len()];
+        let mut coordinates = vec![Rational::ZERO; 1 << self.shared.squares.len()];
         coordinates[0] = value.clone();
-        Surd { coordinates, squares: self.squares.clone() }
+        Surd { coordinates, shared: self.shared.clone() }
     }
 }
 
@@ -276,5 +318,17 @@ mod tests {
         assert_eq!(odd.times(&odd.inverse().unwrap()), of("1"));
         assert_ne!(of("sqrt(2)"), of("sqrt(3)"));
         assert_eq!(of("(1/(1 + sqrt(2)))"), of("sqrt(2) - 1"));
+    }
+
+    #[test]
+    fn numbers_that_grow_beyond_the_limit_have_no_values() {
+        let root = Root::Integer(2u8.into());
+        let mut tower = Tower::of_integers(&[root]);
+        let start = tower.constant(&Formula::parse("7/3 + sqrt(2)").expect("a formula")).expect("no division by zero");
+        // Each square is twice as long: 2^60 words are more than any machine has.
+        let squared = |times: usize| (0..times).fold(start.clone(), |x, _| x.times(&x));
+        assert!(tower.within_limits(|_| squared(60)).is_none());
+        assert_eq!(tower.within_limits(|_| squared(3)), Some(squared(3)));
+        assert!(!squared(3).is_zero());
     }
 }

@@ -53,9 +53,8 @@ pub fn solve<E: Element>(a: &[Vec<E>], right: &[Vec<E>]) -> Option<Vec<Vec<E>>> 
     let n = a.len();
     let mut rows: Vec<Vec<E>> = a.iter().zip(right).map(|(a, r)| [a.as_slice(), r.as_slice()].concat()).collect();
     for column in 0..n {
-        let pivot = (column..n).find(|&r| rows[r][column].inverse().is_some())?;
+        let (pivot, inverse) = (column..n).find_map(|r| Some((r, rows[r][column].inverse()?)))?;
         rows.swap(column, pivot);
-        let inverse = rows[column][column].inverse()?;
         rows[column].iter_mut().skip(column).for_each(|x| *x = x.times(&inverse));
         let pivot = rows[column].clone();
         for (r, row) in rows.iter_mut().enumerate() {
