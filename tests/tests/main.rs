@@ -3,6 +3,7 @@
 mod bad_files;
 mod batches;
 mod c_face;
+mod carried_arms;
 mod embedding;
 mod emission;
 mod emitted;
