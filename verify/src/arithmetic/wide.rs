@@ -64,8 +64,11 @@ impl Wide {
         let excess = size.bit_len().saturating_sub(256);
         let size: UBig = size >> excess;
         let mut words = [0; 4];
-        for (word, part) in words.iter_mut().zip(size.as_words()) {
-            *word = *part;
+        // A word of the integer has 32 bits on some machines.
+        for (word, bytes) in words.iter_mut().zip(size.to_le_bytes().chunks(8)) {
+            let mut whole = [0; 8];
+            whole[..bytes.len()].copy_from_slice(bytes);
+            *word = u64::from_le_bytes(whole);
         }
         Wide::new(value.is_negative(), exponent + excess as i64, words)
     }
