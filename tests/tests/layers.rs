@@ -182,7 +182,7 @@ const VERIFY: Layers = &[
     ("float", &["element", "enclosure", "program"]),
     ("arithmetic", &["element", "enclosure", "float", "formula", "program", "stream"]),
     ("ranges", &["enclosure", "float", "formula", "program"]),
-    ("number", &["arithmetic", "element", "formula"]),
+    ("number", &["arithmetic", "element", "formula", "ranges"]),
     ("equations", &["arithmetic", "element", "float", "formula", "program"]),
     ("reference", &["arithmetic", "contract", "divisors", "element", "equations"]),
     ("base", &["arithmetic", "element", "equations", "formula", "number", "program", "reference"]),
@@ -227,7 +227,7 @@ const VERIFY: Layers = &[
     ),
     ("report", &["bounds", "check", "formula", "ranges"]),
     ("certificate", &["bounds", "check", "claims", "enclosure", "formula", "reader", "report"]),
-    ("plain", &["arithmetic", "base", "element", "enclosure", "equations", "float", "formula", "ranges", "reference"]),
+    ("plain", &["arithmetic", "base", "element", "enclosure", "equations", "float", "formula", "number", "ranges", "reference"]),
     (
         "checker",
         &[
