@@ -56,7 +56,7 @@ pub struct RobotDescription {
     pub parameters: Vec<ParameterDescription>,
     /// Joints from base to tip; `None` if the key is missing or holds no list.
     pub joints: Option<Spanned<Vec<JointDescription>>>,
-    /// The frame that the first row starts from, in the base frame.
+    /// The frame that rows on the base start from, in the base frame.
     pub base: Option<PoseDescription>,
     /// End-effector frame in the last link's frame.
     pub tool: Option<PoseDescription>,
@@ -119,6 +119,10 @@ pub struct JointDescription {
     pub name: Option<Spanned<String>>,
     /// Revolute or prismatic.
     pub kind: Option<Spanned<JointKind>>,
+    /// The joint whose link carries it, or `base`; if absent, the joint before it.
+    pub parent: Option<Spanned<String>>,
+    /// The frame that its row starts from, in the link frame of the parent.
+    pub mount: Option<PoseDescription>,
     /// Length a, m.
     pub a: Value,
     /// Twist alpha, rad.
@@ -127,7 +131,7 @@ pub struct JointDescription {
     pub d: Value,
     /// Angle theta, rad.
     pub theta: Value,
-    /// The link frame at q = 0 in the previous link's frame, in rows of the convention urdf.
+    /// The link frame at q = 0 in the frame that the row starts from, in rows of the convention urdf.
     pub origin: Option<PoseDescription>,
     /// Direction of the joint axis in the link frame, in rows of the convention urdf.
     pub axis: Option<Spanned<[Value; 3]>>,

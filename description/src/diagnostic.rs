@@ -196,6 +196,12 @@ codes! {
         NoJoints Error "no-joints",
         /// More joints than can be generated.
         TooManyJoints Error "too-many-joints",
+        /// `parent` names no joint.
+        UnknownParent Error "unknown-parent",
+        /// `parent` names the joint itself or one further down.
+        LateParent Error "late-parent",
+        /// `mount` beside no `parent`.
+        MountWithoutParent Error "mount-without-parent",
         /// A mass below 0.
         NegativeMass Error "negative-mass",
         /// An inertia tensor that is not positive semidefinite.

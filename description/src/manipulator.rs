@@ -10,7 +10,7 @@
 //! link frame i  = joint frame i * link_frame_i                               (the frame that the user sees)
 //! ```
 //!
-//! A file gives rows A_i, the link frame in the previous one: `A_i = before_i * motion(axis_i, q_i) * after_i` ([`Row`]); `axis` is the z
+//! A file gives rows A_i, the link frame in the parent's: `A_i = before_i * motion(axis_i, q_i) * after_i` ([`Row`]); `axis` is the z
 //! axis in Denavit-Hartenberg rows. A standard Denavit-Hartenberg row Rz(theta + q) Tz(d) Tx(a) Rx(alpha) gives `placement = (parent's
 //! link_frame) Rz(theta) Tz(d)` and `link_frame = Tx(a) Rx(alpha)`; a modified one gives `placement = Rx(alpha) Tx(a) Rz(theta) Tz(d)` and
 //! `link_frame = 1`. In rows of the convention urdf joint frames are laid where Denavit and Hartenberg lay theirs (`validate/frames.rs`).
@@ -51,7 +51,7 @@ pub struct Manipulator {
     pub gravity: [Polynomial; 3],
     /// Whether that is an argument of functions, and `gravity` its nominal value.
     pub gravity_is_argument: bool,
-    /// Joints from base to tip; a parent always precedes its children.
+    /// Joints in the order of the file; a parent always precedes its children.
     pub joints: Vec<Joint>,
     /// The link that carries the end effector.
     pub tip: LinkId,
@@ -133,7 +133,7 @@ pub struct Spring {
     pub rest: Polynomial,
 }
 
-/// A row of the file: link frame i in link frame i - 1 (the base frame) is `before * motion * after`, where motion is the rotation by q about
+/// A row of the file: link frame i in the parent's link frame (the base frame) is `before * motion * after`, where motion is the rotation by q about
 /// `axis`, or the translation by q along it.
 #[derive(Clone, Debug)]
 pub struct Row {
@@ -267,6 +267,16 @@ impl Manipulator {
         self.joints.iter().any(|joint| joint.load.as_ref().is_some_and(|load| !load.is_zero()))
     }
 
+    /// The joint that carries each one, by its index.
+    pub fn parents(&self) -> impl Iterator<Item = Option<usize>> + '_ {
+        self.joints.iter().map(|joint| joint.parent.map(|parent| parent.0 as usize))
+    }
+
+    /// Whether the joints are no single chain, each on the link of the joint before it.
+    pub fn branches(&self) -> bool {
+        self.parents().enumerate().any(|(i, parent)| parent != i.checked_sub(1))
+    }
+
     /// Number of joints.
     pub fn dof(&self) -> usize {
         self.joints.len()
@@ -321,6 +331,18 @@ impl Placement {
     /// A direction of this frame in the outer one.
     pub fn direction(&self, direction: &[Number; 3]) -> [Number; 3] {
         std::array::from_fn(|i| (0..3).fold(Number::zero(), |sum, k| sum.plus(&self.rotation[i][k].times(&direction[k]))))
+    }
+}
+
+impl Row {
+    /// The row behind a pose.
+    #[must_use]
+    pub(crate) fn behind(self, start: Pose) -> Row {
+        if start.elements.is_empty() {
+            return self;
+        }
+        let elements = start.elements.into_iter().chain(self.before.elements);
+        Row { before: Pose::new(elements.collect()), ..self }
     }
 }
 

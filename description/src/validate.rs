@@ -9,6 +9,7 @@
 //! geometry.rs    angles, rows of joints, poses, rotations -> placements
 //! frames.rs      where joint frames lie
 //! bodies.rs      mass, centre of mass, inertia: no impossible body
+//! parents.rs     the tree of links, and where rows start
 //! joints.rs      limits, motor, friction
 //! choices.rs     task, regressor
 //! places.rs      where things stand, for what is found out later
@@ -30,6 +31,7 @@ mod names;
 mod nominal;
 mod number;
 mod parameters;
+mod parents;
 mod places;
 mod plausible;
 
@@ -141,11 +143,12 @@ fn validate(
     if context.diagnostics.has_errors() {
         return None;
     }
-    plausible::check(description, &mut context);
     let (mut joints, tool) = (joints?, tool?);
+    let parents: Vec<Option<usize>> = joints.iter().map(|joint| joint.parent.map(|parent| parent.0 as usize)).collect();
+    plausible::check(description, &parents, &mut context);
     let symbols = context.evaluator.parameters.symbols();
-    frames::lay(&mut joints, &tool, convention == Some(Convention::Urdf), &symbols);
     let tip = LinkId(u32::try_from(joints.len() - 1).expect("the number of joints is bounded"));
+    frames::lay(&mut joints, tip, &tool, convention == Some(Convention::Urdf), &symbols);
     let places = places::gather(description, context.evaluator.parameters.places_of_symbols());
     let mut manipulator = Manipulator {
         name: description.name.as_ref()?.value.clone(),
@@ -195,17 +198,18 @@ fn joints(description: &RobotDescription, context: &mut Context<'_>) -> Option<V
     }
     let convention = description.convention.as_ref().map(|c| c.value);
     let base = geometry::pose(description.base.as_ref(), "the base", context);
+    let parents = parents::resolve(&list.value, context.diagnostics);
     let mut valid = Some(Vec::new());
     for (i, joint) in list.value.iter().enumerate() {
-        let parent = i.checked_sub(1).map(|p| LinkId(u32::try_from(p).expect("the number of joints is bounded")));
-        let base = base.as_ref().filter(|_| i == 0);
+        let parent = parents.as_ref().and_then(|parents| parents[i]);
+        let base = base.as_ref().filter(|_| parents.is_some() && parent.is_none());
         let joint = joints::joint(i, joint, base, parent, convention, context);
         valid = valid.zip(joint).map(|(mut all, joint)| {
             all.push(joint);
             all
         });
     }
-    valid.filter(|_| base.is_some())
+    valid.filter(|_| base.is_some() && parents.is_some())
 }
 
 /// How messages call a joint: by its name, else by its number.

@@ -176,7 +176,8 @@ impl Arm {
                 let joint_frame = given.joints[i].link_frame.inverse();
                 let end = match next {
                     Some(next) => translation(&joint_frame.then(&given.joints[next].placement).translation),
-                    None => translation(&given.tool.frame.translation),
+                    None if given.tip.0 as usize == i => translation(&given.tool.frame.translation),
+                    None => Vector3::zeros(),
                 };
                 let axes = bodies.first().map(|body| &body.axes.frame.rotation);
                 Link {

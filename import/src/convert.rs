@@ -7,7 +7,8 @@
 //! ```
 //!
 //! To urdf: link frames become those on the joint axes, rows and bodies keep their expressions. To rows of Denavit and Hartenberg: joint axes are
-//! lines at q = 0, and rows are what their common normals say; bodies are attached where their frames were.
+//! lines at q = 0, and rows are what their common normals say; bodies are attached where their frames were. An arm with branches is a list of
+//! chains, each with the rows of a serial arm; a branch starts from the old link frame of its parent, by `mount`.
 
 mod lines;
 mod names;
@@ -77,6 +78,8 @@ struct Converter<'d> {
 
 /// The new content of a joint: its row, and its old link frame in the new one.
 struct Row<'d> {
+    /// Poses of the frame that the row starts from, in the new link frame of its parent.
+    mount: Vec<String>,
     /// Lines of the row.
     keys: Vec<String>,
     /// Poses of the old link frame in the new one, as they are written.
@@ -127,10 +130,9 @@ impl<'d> Converter<'d> {
         text.extend(poses("base", &rows.base));
         text.push("joints:".into());
         let joints: &[JointDescription] = description.joints.as_ref().map_or(&[], |joints| &joints.value);
-        let mut before: Option<&Row<'_>> = None;
+        let parents: Vec<Option<usize>> = self.arm.parents().collect();
         for (k, (joint, row)) in joints.iter().zip(&rows.rows).enumerate() {
-            self.joint(joint, k, row, before, &mut text);
-            before = Some(row);
+            self.joint(joint, k, row, parents[k].map(|parent| &rows.rows[parent]), &mut text);
         }
         text.extend(poses("tool", &rows.tool));
         if let Some(payload) = &description.payload {
@@ -191,7 +193,8 @@ impl<'d> Converter<'d> {
                 }
                 keys.extend(joint.origin.as_ref().and_then(|origin| poses("origin", &self.elements(Some(origin)))));
                 keys.extend(joint.axis.as_ref().map(|axis| format!("axis: {}", self.vector(&axis.value))));
-                Row { keys, poses: Vec::new(), frame: Placement::identity(), named: Vec::new() }
+                let mount = self.elements(joint.mount.as_ref());
+                Row { mount, keys, poses: Vec::new(), frame: Placement::identity(), named: Vec::new() }
             })
             .collect();
         Rows { base: self.elements(self.description.base.as_ref()), rows, tool: self.elements(self.description.tool.as_ref()) }
@@ -200,21 +203,24 @@ impl<'d> Converter<'d> {
     /// Rows of Denavit and Hartenberg as poses and axes.
     fn on_axes(&mut self, from: Convention) -> Rows<'d> {
         let joints = self.description.joints.as_ref().map_or(&[][..], |joints| &joints.value);
-        let mut before = Vec::new();
-        let mut rows = Vec::new();
+        let mut rows: Vec<Row<'d>> = Vec::new();
+        let behind = |rows: &[Row<'d>], parent: usize| rows[parent].poses.clone();
         for (joint, valid) in joints.iter().zip(&self.arm.joints) {
             let twist = self.two(["xyz: [", &self.value(&joint.a), ", 0, 0]"], ["rpy: [", &self.value(&joint.alpha), ", 0, 0]"]);
             let turn = self.two(["xyz: [0, 0, ", &self.value(&joint.d), "]"], ["rpy: [0, 0, ", &self.value(&joint.theta), "]"]);
             let standard = from == Convention::Standard;
+            let mut before = valid.parent.map_or_else(Vec::new, |parent| behind(&rows, parent.0 as usize));
+            before.extend(self.elements(joint.mount.as_ref()));
             before.extend(twist.clone().filter(|_| !standard).into_iter().chain(turn));
             let mut keys: Vec<String> = poses("origin", &before).into_iter().collect();
             keys.push("axis: [0, 0, 1]".into());
-            before = twist.filter(|_| standard).into_iter().collect();
+            let after: Vec<String> = twist.filter(|_| standard).into_iter().collect();
             let named = if standard { names::of_values([&joint.a, &joint.alpha]) } else { Vec::new() };
-            rows.push(Row { keys, poses: before.clone(), frame: self.nominal(&valid.row.after.frame), named });
+            rows.push(Row { mount: Vec::new(), keys, poses: after, frame: self.nominal(&valid.row.after.frame), named });
         }
-        before.extend(self.elements(self.description.tool.as_ref()));
-        Rows { base: self.elements(self.description.base.as_ref()), rows, tool: before }
+        let mut tool = behind(&rows, self.arm.tip.0 as usize);
+        tool.extend(self.elements(self.description.tool.as_ref()));
+        Rows { base: self.elements(self.description.base.as_ref()), rows, tool }
     }
 
     /// A pose of a translation and a rotation, those that are not 0.
@@ -228,10 +234,50 @@ impl<'d> Converter<'d> {
         let description = self.description;
         self.frozen.extend(description.joints.iter().flat_map(|joints| &joints.value).flat_map(names::of_row));
         self.frozen.extend([&description.base, &description.tool].into_iter().flat_map(|pose| names::of_pose(pose.as_ref())));
-        let joints: Vec<lines::Axis> = self
-            .arm
-            .joints
-            .iter()
+        let chains = self.chains();
+        let several_on_base = self.arm.parents().filter(Option::is_none).count() > 1;
+        let mut all = Rows { base: Vec::new(), rows: Vec::new(), tool: Vec::new() };
+        let mut rows: Vec<Option<Row<'d>>> = self.arm.joints.iter().map(|_| None).collect();
+        for chain in chains {
+            let is_last = chain.last() == Some(&(self.arm.tip.0 as usize));
+            let end = if is_last { self.nominal(&self.arm.tool.frame) } else { Placement::identity() };
+            let Rows { base, rows: of_chain, tool } = self.normals_of(to, &chain, &end)?;
+            let first = chain[0];
+            for (k, row) in chain.into_iter().zip(of_chain) {
+                rows[k] = Some(row);
+            }
+            // A chain starts from the old link frame of its parent.
+            let mut mount = self.arm.joints[first]
+                .parent
+                .map_or_else(Vec::new, |parent| rows[parent.0 as usize].as_ref().map_or_else(Vec::new, |row| row.poses.clone()));
+            match self.arm.joints[first].parent {
+                None if !several_on_base => all.base = base,
+                _ => {
+                    mount.extend(base);
+                    rows[first].as_mut()?.mount = mount;
+                }
+            }
+            if is_last {
+                all.tool = tool;
+            }
+        }
+        all.rows = rows.into_iter().collect::<Option<_>>()?;
+        Some(all)
+    }
+
+    /// The joints by chains, each from a joint that is not the first one on its parent to a link without joints; parents precede children.
+    fn chains(&self) -> Vec<Vec<usize>> {
+        let parents: Vec<Option<usize>> = self.arm.parents().collect();
+        let first_child = |of: usize| parents.iter().position(|parent| *parent == Some(of));
+        let begins = |&k: &usize| parents[k].is_none_or(|parent| first_child(parent) != Some(k));
+        let chain = |first: usize| std::iter::successors(Some(first), |&k| first_child(k)).collect();
+        (0..parents.len()).filter(begins).map(chain).collect()
+    }
+
+    /// The rows of a chain of joints to the frame `end` in its last link frame, by common normals.
+    fn normals_of(&mut self, to: Convention, chain: &[usize], end: &Placement) -> Option<Rows<'d>> {
+        let of_chain = || chain.iter().map(|&k| &self.arm.joints[k]);
+        let joints: Vec<lines::Axis> = of_chain()
             .map(|joint| lines::Axis {
                 before: self.nominal(&joint.row.before.frame),
                 direction: joint.row.axis.clone(),
@@ -239,8 +285,8 @@ impl<'d> Converter<'d> {
                 prismatic: joint.kind == JointKind::Prismatic,
             })
             .collect();
-        let names: Vec<&str> = self.arm.joints.iter().map(|joint| joint.name.as_str()).collect();
-        let normals = lines::normals(&joints, &self.nominal(&self.arm.tool.frame))?;
+        let names: Vec<&str> = of_chain().map(|joint| joint.name.as_str()).collect();
+        let normals = lines::normals(&joints, end)?;
         for (k, normal) in normals.iter().enumerate() {
             let turned = normal.twist.0.to_f64().abs();
             if turned > 0.0 && turned < 1e-3 && normal.twist.0.sign() != std::cmp::Ordering::Equal {
@@ -270,7 +316,8 @@ impl<'d> Converter<'d> {
             ];
             let link = if standard { &normals[i].far } else { &normals[i].near };
             let frame = link.inverse().then(&joints[i - 1].after);
-            rows.push(Row { keys, poses: writer.pose(&frame).into_iter().collect(), frame, named: Vec::new() });
+            let poses = writer.pose(&frame).into_iter().collect();
+            rows.push(Row { mount: Vec::new(), keys, poses, frame, named: Vec::new() });
         }
         // Rz and Tz about the z axes of base and end effector, and the twists that no row holds.
         let about_z = |writer: &mut Writer, h: &Number, turn: &(Number, Number)| {
@@ -300,6 +347,11 @@ impl<'d> Converter<'d> {
         let kind = if self.arm.joints[k].kind == JointKind::Prismatic { "prismatic" } else { "revolute" };
         text.push(format!("  - name: {}", self.arm.joints[k].name));
         text.push(format!("    type: {kind}"));
+        let parent = self.arm.parents().nth(k).flatten();
+        if parent != k.checked_sub(1) || !row.mount.is_empty() {
+            text.push(format!("    parent: {}", parent.map_or("base", |parent| &self.arm.joints[parent].name)));
+        }
+        text.extend(poses("    mount", &row.mount));
         text.extend(row.keys.iter().map(|key| format!("    {key}")));
         let mut limits = Vec::new();
         limits.extend(joint.limits.position.as_ref().map(|limits| format!("position: {}", self.vector(&limits.value))));

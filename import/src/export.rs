@@ -108,7 +108,8 @@ pub fn export(source: &Source) -> (Option<Exported>, Diagnostics) {
     let exported = description.map(|description| {
         let values = NominalValues::new(&description);
         let writer = Writer { source, values, rounded: 0, names: BTreeSet::new(), parts: Vec::new(), lines: Vec::new() };
-        writer.write(&description)
+        let parents = valid.iter().flat_map(|(arm, _)| arm.parents()).collect::<Vec<_>>();
+        writer.write(&description, &parents)
     });
     (exported, diagnostics)
 }
@@ -125,16 +126,20 @@ struct Writer<'d> {
 }
 
 impl Writer<'_> {
-    fn write(mut self, description: &RobotDescription) -> Exported {
+    /// `parents`: the joint that carries each one.
+    fn write(mut self, description: &RobotDescription, parents: &[Option<usize>]) -> Exported {
         let joints: &[JointDescription] = description.joints.as_ref().map_or(&[], |joints| &joints.value);
         let convention = description.convention.as_ref().map_or(Convention::Urdf, |convention| convention.value);
         self.names.extend(["base".to_owned(), "tool".to_owned()]);
         let name = |joint: &JointDescription| joint.name.as_ref().map_or_else(String::new, |name| name.value.clone());
         self.names.extend(joints.iter().map(|joint| format!("{}_link", name(joint))));
-        let mut link = "base".to_owned();
-        // The poses between the origin of the last link and the next row.
-        let mut before = self.poses(description.base.as_ref());
+        let base = self.poses(description.base.as_ref());
+        // The name of each link, and the poses between its origin and the rows on it.
+        let mut links: Vec<(String, Vec<Pose>)> = Vec::new();
         for (k, joint) in joints.iter().enumerate() {
+            let (mut link, mut before) =
+                parents[k].map_or_else(|| ("base".to_owned(), base.clone()), |parent| links[parent].clone());
+            before.extend(self.poses(joint.mount.as_ref()));
             let twist = [self.about_x(joint)];
             let turn = self.about_z(joint);
             match convention {
@@ -155,14 +160,16 @@ impl Writer<'_> {
                 motion: Some(motion),
                 body: None,
             });
-            link = moving;
-            before = after.into_iter().filter(|pose| !pose.is_identity()).collect();
+            let after: Vec<Pose> = after.into_iter().filter(|pose| !pose.is_identity()).collect();
             if let Some(body) = &joint.link {
-                self.bodies(&name, &link, &before, body);
+                self.bodies(&name, &moving, &after, body);
             }
+            links.push((moving, after));
         }
-        before.extend(self.poses(description.tool.as_ref()));
-        self.fixed("tool", &link, before, None);
+        if let Some((link, mut before)) = links.pop() {
+            before.extend(self.poses(description.tool.as_ref()));
+            self.fixed("tool", &link, before, None);
+        }
         self.say_what_is_left_out(description, joints);
         let urdf =
             Urdf { name: description.name.as_ref().map_or_else(String::new, |name| name.value.clone()), parts: self.parts };

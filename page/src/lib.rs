@@ -144,7 +144,7 @@ fn data(
 ) -> Value {
     let row = |row: &rows::Row| {
         let values = row.denavit_hartenberg.as_ref();
-        json!({
+        let mut of_row = json!({
             "name": row.name,
             "type": if row.revolute { "revolute" } else { "prismatic" },
             "dh": values.map(|all| all.each_ref().map(|value| value.number)),
@@ -152,7 +152,11 @@ fn data(
             "axis": row.axis,
             "after": row.after,
             "limits": row.limits,
-        })
+        });
+        if let Some((parent, start)) = &row.branch {
+            of_row["branch"] = json!({ "parent": parent, "start": start });
+        }
+        of_row
     };
     json!({
         "name": manipulator.name,

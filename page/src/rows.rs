@@ -21,6 +21,8 @@ pub(crate) struct Row {
     pub(crate) denavit_hartenberg: Option<[Value; 4]>,
     /// Source text of origin and axis, for rows of the convention urdf.
     pub(crate) urdf: Option<[String; 2]>,
+    /// The link that carries the row, none for the base, and the frame in it that the row starts from; only where the arm branches.
+    pub(crate) branch: Option<(Option<usize>, Frame)>,
     /// Elementary transforms before the motion, from the previous frame; those of the first row start at the frame that `base` gives.
     pub(crate) before: Vec<Frame>,
     /// Direction of the joint axis after these transforms.
@@ -51,40 +53,41 @@ pub(crate) fn convention(description: &RobotDescription) -> Convention {
 pub(crate) fn rows(source: &Source, description: &RobotDescription, manipulator: &Manipulator) -> Vec<Row> {
     let written = description.joints.iter().flat_map(|joints| &joints.value);
     let convention = convention(description);
-    let base = base_elements(manipulator, convention);
-    let joints = manipulator.joints.iter().zip(written).enumerate();
-    let skip = |i| if i == 0 { base } else { 0 };
-    joints.map(|(i, (joint, written))| row(source, manipulator, convention, joint, written, skip(i))).collect()
+    let joints = manipulator.joints.iter().zip(written).zip(manipulator.parents());
+    let branches = manipulator.branches();
+    let branch = |joint: &Joint, parent| {
+        let start = joint.row.before.elements[..elements_before(joint, convention)].to_vec();
+        branches.then(|| (parent, frame(manipulator, &Pose::new(start).frame)))
+    };
+    joints
+        .map(|((joint, written), parent)| Row {
+            branch: branch(joint, parent),
+            ..row(source, manipulator, convention, joint, written)
+        })
+        .collect()
 }
 
 /// The frame in which the first row starts, relative to the base frame.
 pub(crate) fn base(manipulator: &Manipulator, description: &RobotDescription) -> Frame {
     let elements = &manipulator.joints[0].row.before.elements;
-    let count = base_elements(manipulator, convention(description));
+    let count = elements_before(&manipulator.joints[0], convention(description));
     frame(manipulator, &Pose::new(elements[..count].to_vec()).frame)
 }
 
-/// The number of transforms before the first motion that belong to the base.
-fn base_elements(manipulator: &Manipulator, convention: Convention) -> usize {
-    let elements = manipulator.joints[0].row.before.elements.len();
+/// The number of transforms before a motion that belong to `base` and `mount`, not to the row.
+fn elements_before(joint: &Joint, convention: Convention) -> usize {
+    let elements = joint.row.before.elements.len();
     match convention {
         Convention::Standard => elements - 1,
         Convention::Modified => elements - 2,
-        // The transforms of the base and of the origin cannot be told apart.
+        // Those transforms and the ones of the origin cannot be told apart.
         Convention::Urdf => 0,
     }
 }
 
-fn row(
-    source: &Source,
-    manipulator: &Manipulator,
-    convention: Convention,
-    joint: &Joint,
-    written: &JointDescription,
-    skip: usize,
-) -> Row {
+fn row(source: &Source, manipulator: &Manipulator, convention: Convention, joint: &Joint, written: &JointDescription) -> Row {
     let frames = |elements: &[Placement]| -> Vec<Frame> { elements.iter().map(|e| frame(manipulator, e)).collect() };
-    let before = &joint.row.before.elements[skip..];
+    let before = &joint.row.before.elements[elements_before(joint, convention)..];
     let text = |value: &Option<Expression>| value.as_ref().map_or(String::new(), |v| v.text(source));
     let numbers = match convention {
         Convention::Standard | Convention::Modified => {
@@ -98,6 +101,7 @@ fn row(
     });
     Row {
         name: joint.name.clone(),
+        branch: None,
         revolute: joint.kind == JointKind::Revolute,
         denavit_hartenberg,
         urdf: (convention == Convention::Urdf).then(|| {

@@ -5,6 +5,8 @@
  * standard: from frame i - 1 along its z by d, then along x of frame i by a
  * modified: from frame i - 1 along its x by a, then along z of frame i by d
  * urdf:     from frame i - 1 to the origin, then along the axis if the joint slides
+ *
+ * Where an arm branches, frame i - 1 is the one that the row starts from.
  */
 
 import { Ball, Box, Cylinder } from "./solids.mjs";
@@ -71,14 +73,21 @@ export class Arm {
         this.points = [];
     }
 
+    /** The frame that a row starts from: where arms branch, in that of its parent. @param {number} i @param {number[][][]} frames */
+    start(i, frames) {
+        const branch = this.data.rows[i].branch;
+        if (branch) return branch.parent === null ? branch.start : compose(frames[branch.parent], branch.start);
+        return i === 0 ? this.data.base : frames[i - 1];
+    }
+
     /** @param {number[]} q @param {number[][][]} frames those of the links, from 1 @param {number[][]} end that of the end effector */
     place(q, frames, end) {
         const { data } = this;
         this.points = [];
-        let start = data.base;
-        const up = column(start, 2);
-        this.base.between(along(origin(start), -0.03 * this.size, up), origin(start));
+        const up = column(data.base, 2);
+        this.base.between(along(origin(data.base), -0.03 * this.size, up), origin(data.base));
         this.rows.forEach((row, i) => {
+            const start = this.start(i, frames);
             const { points, joint, axis, moved } = bend(data, i, start, frames[i], q[i]);
             this.points.push(...points);
             row.segments[0].between(points[0], points[1]);
@@ -97,9 +106,8 @@ export class Arm {
             } else {
                 row.joint.between(along(joint, -this.half, axis), along(joint, this.half, axis));
             }
-            start = frames[i];
         });
-        this.tool.between(origin(start), origin(end));
+        this.tool.between(origin(frames[frames.length - 1]), origin(end));
         this.points.push(origin(end));
     }
 }

@@ -42,16 +42,14 @@ pub type Ten = [f64; 10];
 /// A frame in another: rotation by rows, origin.
 pub type Placed = ([[f64; 3]; 3], [f64; 3]);
 
-/// A serial arm in plain numbers, SI units.
+/// An arm in plain numbers, SI units.
 #[derive(Clone, Debug)]
 pub struct Model {
     /// Modified (Craig, Khalil) instead of standard Denavit-Hartenberg rows.
     pub modified: bool,
-    /// The frame that the first row starts from, in the base frame.
-    pub base: Placed,
     /// Acceleration of gravity in the base frame.
     pub gravity: [f64; 3],
-    /// Joints from base to tip, each with the link that it moves.
+    /// Joints in the order of the file, each with the link that it moves; the last one carries the end effector.
     pub joints: Vec<Joint>,
     /// End-effector frame in the last link's frame: rotation by rows, translation.
     pub tool: Placed,
@@ -64,6 +62,10 @@ pub struct Model {
 pub struct Joint {
     /// Slides instead of turning.
     pub prismatic: bool,
+    /// The frame of the link that carries it: 0 is the base, i the link of joint i.
+    pub on: usize,
+    /// The frame there that its row starts from.
+    pub start: Placed,
     /// a, alpha, d, theta of the row; the joint variable is added to d or theta.
     pub row: [f64; 4],
     /// For rows that are not Denavit-Hartenberg: the link frame at q = 0 in the previous frame, and the unit axis in it.
@@ -94,7 +96,7 @@ pub struct Joint {
     pub armature: Option<f64>,
 }
 
-/// The rotor of a joint, in the frame of the previous link (the base frame for the first joint).
+/// The rotor of a joint, in the frame of the link that carries the joint.
 #[derive(Clone, Debug)]
 pub struct Motor {
     /// k_r.
@@ -112,6 +114,11 @@ pub struct Motor {
 }
 
 impl Model {
+    /// Whether a frame moves with another, from 0, the base.
+    fn carries(&self, outer: usize, frame: usize) -> bool {
+        frame == outer || frame > 0 && self.carries(outer, self.joints[frame - 1].on)
+    }
+
     /// Number of joints.
     pub fn dof(&self) -> usize {
         self.joints.len()

@@ -219,7 +219,31 @@ pub fn arm_with(name: &str, dof: usize, random: &mut Random) -> String {
     drawn(name, dof, angle, random)
 }
 
-/// The same with angles that are decimals: no sine or cosine has roots.
+/// A random arm with branches: the rows of [`arm_with`], each on the link of a joint before it or on the base, half of these with a mount.
+pub fn tree(name: &str, dof: usize, random: &mut Random) -> String {
+    let (mut text, mut joints) = (String::new(), 0);
+    for line in arm_with(name, dof, random).lines() {
+        text.push_str(line);
+        text.push('\n');
+        if !line.starts_with("    type: ") {
+            continue;
+        }
+        joints += 1;
+        if joints == 1 || random.chance(35) {
+            continue;
+        }
+        match random.whole(0, joints - 1) {
+            0 => text.push_str("    parent: base\n"),
+            parent => writeln!(text, "    parent: joint{parent}").expect("text"),
+        }
+        if random.chance(50) {
+            writeln!(text, "    mount: {}", pose(random, 1)).expect("text");
+        }
+    }
+    text
+}
+
+/// An arm as [`arm_with`] draws it, with angles that are decimals: no sine or cosine has roots.
 pub fn arm_with_general_angles(name: &str, dof: usize, random: &mut Random) -> String {
     drawn(name, dof, general_angle, random)
 }

@@ -28,3 +28,4 @@ mod robot_yaml_page;
 mod shown;
 mod snapshots;
 mod technical_project;
+mod trees;

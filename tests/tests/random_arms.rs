@@ -34,6 +34,16 @@ fn random_arms_agree_with_the_oracle() {
     });
 }
 
+#[test]
+#[ignore = "wide"]
+fn random_trees_agree_with_the_oracle() {
+    for seed in 0..ARMS / 4 {
+        let joints = 3 + (seed % 6) as usize;
+        let text = random::tree(&format!("tree_{seed}"), joints, &mut random::Random::new(!seed));
+        check_text(&text, &format!("tree {seed}"), seed, Passes::NONE);
+    }
+}
+
 /// Each pass alone, and all, left out: the same functions at other costs.
 #[test]
 #[ignore = "wide"]
@@ -51,11 +61,14 @@ fn check(seed: u64) {
 }
 
 fn check_without(seed: u64, without: Passes, how: &str) {
-    let text = random::arm(seed);
-    let robot = Interpreted::with_options(&text, &Options { without, ..Options::default() })
-        .unwrap_or_else(|faults| panic!("seed {seed}{how}:\n{faults}\n{text}"));
+    check_text(&random::arm(seed), &format!("arm {seed}{how}"), seed, without);
+}
+
+fn check_text(text: &str, name: &str, seed: u64, without: Passes) {
+    let robot = Interpreted::with_options(text, &Options { without, ..Options::default() })
+        .unwrap_or_else(|faults| panic!("{name}:\n{faults}\n{text}"));
     let names: Vec<String> = robot.module.functions.iter().map(|f| f.name()).collect();
     let absent: Vec<String> = robot.module.absent.iter().map(|absent| absent.function.clone()).collect();
-    assert_eq!(names, expected(&absent, &text));
-    judge(&format!("arm {seed}{how}"), &robot, &text, seed, Tolerance { values: ORACLE, residual: FORWARD_RESIDUAL });
+    assert_eq!(names, expected(&absent, text));
+    judge(name, &robot, text, seed, Tolerance { values: ORACLE, residual: FORWARD_RESIDUAL });
 }

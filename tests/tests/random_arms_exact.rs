@@ -117,6 +117,24 @@ fn arms_that_took_a_mend_stay_mended() {
     }
 }
 
+/// Arms with branches of 2 to 5 joints.
+#[test]
+fn trees_equal_their_equations_and_keep_every_identity_exactly() {
+    (0..4).for_each(certify_tree);
+}
+
+#[test]
+#[ignore = "wide"]
+fn more_trees_equal_their_equations_and_keep_every_identity_exactly() {
+    (4..32).for_each(certify_tree);
+}
+
+fn certify_tree(seed: u64) {
+    let joints = 2 + (seed % 4) as usize;
+    let text = random::tree(&format!("tree_{seed}"), joints, &mut Random::new(seed));
+    certify_arm(seed, joints, &text, &mut Seen::default());
+}
+
 /// Products of rotations by general angles have no short form: a seed for each number of joints.
 #[test]
 #[ignore = "wide"]

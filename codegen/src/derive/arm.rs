@@ -276,6 +276,11 @@ impl Arm {
         self.joints.len()
     }
 
+    /// Whether each joint is on the link of the joint before it.
+    pub fn is_chain(&self) -> bool {
+        self.joints.iter().enumerate().all(|(i, joint)| joint.parent == i.checked_sub(1))
+    }
+
     /// The links from the base to a link.
     pub fn path_to(&self, link: usize) -> Vec<usize> {
         let mut path: Vec<usize> = std::iter::successors(Some(link), |&i| self.joints[i].parent).collect();

@@ -6,12 +6,17 @@
 //! M^-1 = W' D^-1 W,   W = L^-1
 //! ```
 //!
-//! One reciprocal per row; entries that are identically zero cost no operation.
+//! One reciprocal per row; entries that are identically zero cost no operation. Rows are eliminated in any order. In the inertia matrix of an
+//! arm with branches those of the leaves come first: then entries between branches, which are zero, stay zero (Featherstone 2008, Rigid Body
+//! Dynamics Algorithms, Sect. 6.5).
 
+use super::arm::Arm;
 use crate::ring::{ExprId, Pool};
 
-/// L and D^-1.
+/// L and D^-1, of the rows and columns in the order of their elimination.
 pub struct LdlFactors {
+    /// The places of the rows in the matrix.
+    order: Vec<usize>,
     /// L, below the diagonal.
     unit: Vec<Vec<ExprId>>,
     /// 1/D.
@@ -21,6 +26,16 @@ pub struct LdlFactors {
 impl LdlFactors {
     /// Factors a matrix none of whose leading minors is identically zero.
     pub fn new(pool: &mut Pool, m: &[Vec<ExprId>]) -> LdlFactors {
+        LdlFactors::in_order(pool, m, (0..m.len()).collect())
+    }
+
+    /// Factors the inertia matrix of an arm.
+    pub fn of_inertia(pool: &mut Pool, arm: &Arm, b: &[Vec<ExprId>]) -> LdlFactors {
+        let joints = 0..arm.dof();
+        LdlFactors::in_order(pool, b, if arm.is_chain() { joints.collect() } else { joints.rev().collect() })
+    }
+
+    fn in_order(pool: &mut Pool, m: &[Vec<ExprId>], order: Vec<usize>) -> LdlFactors {
         let n = m.len();
         // Columns of L D as they come (undivided) and of L (unit): an entry of L D L' needs one of each.
         let mut undivided = vec![vec![ExprId::ZERO; n]; n];
@@ -28,7 +43,7 @@ impl LdlFactors {
         let mut reciprocal = vec![ExprId::ZERO; n];
         for j in 0..n {
             for i in j..n {
-                let mut entry = m[i][j];
+                let mut entry = m[order[i]][order[j]];
                 for k in 0..j {
                     let product = pool.mul(undivided[i][k], unit[j][k]);
                     entry = pool.sub(entry, product);
@@ -40,12 +55,12 @@ impl LdlFactors {
                 unit[i][j] = pool.mul(undivided[i][j], reciprocal[j]);
             }
         }
-        LdlFactors { unit, reciprocal }
+        LdlFactors { order, unit, reciprocal }
     }
 
     /// L^-1 r.
     fn forward(&self, pool: &mut Pool, right: &[ExprId]) -> Vec<ExprId> {
-        let mut y = right.to_vec();
+        let mut y: Vec<ExprId> = self.order.iter().map(|&i| right[i]).collect();
         for i in 0..y.len() {
             for j in 0..i {
                 let product = pool.mul(self.unit[i][j], y[j]);
@@ -66,7 +81,9 @@ impl LdlFactors {
                 x[i] = pool.sub(x[i], product);
             }
         }
-        x
+        let mut solution = x.clone();
+        self.order.iter().zip(x).for_each(|(&i, x)| solution[i] = x);
+        solution
     }
 
     /// A M^-1 A' for a matrix given by rows.

@@ -130,8 +130,8 @@ pub(super) const ROBOT: &[Entry] = &[
     optional("units", Shape::Units, "Units of the numbers of this file; SI units if left out."),
     optional("products", Shape::Word(PRODUCT_WORDS), "Sign of the products of inertia. tensor (the default): xy is the element -∫xy dm of the tensor. integral: xy is ∫xy dm."),
     optional("parameters", Shape::Parameters, "Named quantities for every expression, also for later parameters."),
-    optional("base", Shape::Pose, "The frame before the first row, in the base frame."),
-    required("joints", "joints:` and below it one `- name: ...", Shape::Joints, "Joints from base to tip, each with the link that it moves."),
+    optional("base", Shape::Pose, "The frame that rows on the base start from, in the base frame."),
+    required("joints", "joints:` and below it one `- name: ...", Shape::Joints, "Joints, each with the link that it moves; from base to tip, and in an arm with branches each behind its parent."),
     optional("tool", Shape::Pose, "The frame of the end effector, in the last link's frame."),
     optional("payload", Shape::Mapping("payload", PAYLOAD), "A load in the frame of the end effector."),
     optional("task", Shape::Task, "Rows of the operational space in your order, in the base frame: x y z linear, rx ry rz angular; all six if left out."),
@@ -147,6 +147,12 @@ const TYPE: Entry = required(
     Shape::Word(JOINT_KIND_WORDS),
     "revolute: turns about its axis. prismatic: slides along it. A fixed joint belongs to its link.",
 );
+const PARENT: Entry = optional(
+    "parent",
+    Shape::Name,
+    "The joint whose link carries this joint, or base; if left out, the joint before it in the list.",
+);
+const MOUNT: Entry = optional("mount", Shape::Pose, "The frame that the row starts from, in the link frame of parent.");
 const LIMITS_OF_JOINT: Entry =
     optional("limits", Shape::Mapping("limits", LIMITS), "Limits of the joint: constants of the module, which no equation uses.");
 const LINK_OF_JOINT: Entry =
@@ -166,6 +172,8 @@ const ARMATURE: Entry =
 pub(super) const JOINT: &[Entry] = &[
     NAME_OF_JOINT,
     TYPE,
+    PARENT,
+    MOUNT,
     required("a", "a: 0.5", Shape::Expression(LENGTH), "Length a of the row."),
     required("alpha", "alpha: pi/2", Shape::Expression(ANGLE), "Twist alpha of the row."),
     required("d", "d: 0", Shape::Expression(LENGTH), "Offset d of the row; a prismatic joint adds its variable."),
@@ -181,7 +189,13 @@ pub(super) const JOINT: &[Entry] = &[
 pub(super) const URDF_JOINT: &[Entry] = &[
     NAME_OF_JOINT,
     TYPE,
-    optional("origin", Shape::Pose, "The link frame at q = 0, in the previous link's frame; the same frame if left out."),
+    PARENT,
+    MOUNT,
+    optional(
+        "origin",
+        Shape::Pose,
+        "The link frame at q = 0, in the frame that the row starts from; the same frame if left out.",
+    ),
     required(
         "axis",
         "axis: [0, 0, 1]",
@@ -252,8 +266,8 @@ pub(super) const MOTOR: &[Entry] = &[
     usual("ratio", "ratio: 100", Shape::Expression("rad/rad or rad/m"), "Rotor speed over joint speed, not 0; 1 if left out."),
     optional("inertia", Shape::Expression(MOMENT), "Inertia about the spin axis, at the rotor: before the gear."),
     optional("mass", Shape::Expression(MASS), "Mass, only if the masses of the links do not contain it."),
-    optional("position", Shape::Vector(3, LENGTH), "Position of the mass, in the previous link's frame."),
-    optional("axis", Shape::Vector(3, ""), "Spin axis in the previous link's frame; the joint axis if left out."),
+    optional("position", Shape::Vector(3, LENGTH), "Position of the mass, in the frame of the link before."),
+    optional("axis", Shape::Vector(3, ""), "Spin axis in the frame of the link before; the joint axis if left out."),
     optional("viscous", Shape::Expression("N m s"), "Viscous friction at the rotor; at the joint it acts as ratio² · viscous."),
     optional(
         "gain",

@@ -136,6 +136,8 @@ impl Reader<'_> {
                 let help = "`revolute`: turns about its z axis; `prismatic`: slides along it. Leave a fixed joint out: it is part of its link";
                 self.choice(node, key, "type", &JOINT_KINDS, Code::UnknownJointType, help)
             }),
+            parent: fields.get("parent").and_then(|(key, node)| self.word(node, key, "parent")),
+            mount: fields.get("mount").and_then(|(key, node)| self.pose(node, key, "mount")),
             a: self.field(&fields, "a"),
             alpha: self.field(&fields, "alpha"),
             d: self.field(&fields, "d"),

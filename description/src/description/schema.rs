@@ -62,7 +62,7 @@ pub fn schema() -> Value {
     let about = [
         ("$schema", json!("http://json-schema.org/draft-07/schema#")),
         ("title", json!("robot.yaml of armgen")),
-        ("description", json!("A serial robot arm: joints, links, drives.")),
+        ("description", json!("A robot arm: joints, links, drives.")),
         ("allOf", json!(rules)),
         ("definitions", json!(definitions)),
     ];

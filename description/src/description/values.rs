@@ -192,6 +192,7 @@ macro_rules! walk {
                     let slides = joint.kind.as_ref().is_some_and(|kind| kind.value == JointKind::Prismatic);
                     let [position, rate, effort, armature] =
                         if slides { [Length, Velocity, Force, Mass] } else { [Angle, AngularVelocity, Torque, RotorInertia] };
+                    $pose(to, & $($mutable)? joint.mount);
                     $one(to, Role::Length, Length, & $($mutable)? joint.a);
                     $one(to, Role::Angle, Angle, & $($mutable)? joint.alpha);
                     $one(to, Role::Length, Length, & $($mutable)? joint.d);

@@ -2,7 +2,8 @@
 //!
 //! Rows of Denavit and Hartenberg have joint frames of their own. In rows of the convention urdf frames stand anywhere, as somebody drew the
 //! links; joint frames are then laid where Denavit and Hartenberg lay theirs, so that an arm costs the same whoever described it (the book,
-//! Sect. 2.8.2). With the axes as lines at q = 0, u_i their directions, and line n + 1 the z axis of the end effector:
+//! Sect. 2.8.2). With the axes as lines at q = 0, u_i their directions, and line n + 1 the z axis of the end effector (of the link itself at
+//! the end of another branch); where arms branch, i - 1 is the parent of i, and i + 1 its first child:
 //!
 //! ```text
 //! x_i = ±u_i × u_{i+1} / |u_i × u_{i+1}|     skew lines: from line i to line i+1; intersecting ones: so that x_i · x_{i-1} ≥ 0
@@ -20,19 +21,26 @@ use std::cmp::Ordering;
 use super::geometry::{cross, dot};
 use crate::exact::{Number, Polynomial};
 use crate::kinds::JointKind;
-use crate::manipulator::{Joint, Parameter, Placement, Pose};
+use crate::manipulator::{Joint, LinkId, Parameter, Placement, Pose};
 
 /// Terms of a number of a joint frame.
 const MAX_TERMS: usize = 16;
 
 /// Moves each placement into the joint frame of its parent. `anywhere`: rows say nothing of joint frames, which are laid first.
-pub(super) fn lay(joints: &mut [Joint], tool: &Pose, anywhere: bool, parameters: &[Parameter]) {
+pub(super) fn lay(joints: &mut [Joint], tip: LinkId, tool: &Pose, anywhere: bool, parameters: &[Parameter]) {
     let mut frames: Vec<Placement> = Vec::new();
     let reach =
         2.0 * joints.iter().map(|joint| &joint.row.before.frame).chain([&tool.frame]).map(|f| size(f, parameters)).sum::<f64>();
+    let index = |link: LinkId| link.0 as usize;
+    let bare = Pose::identity();
     for i in 0..joints.len() {
         let frame = match anywhere {
-            true => frame(joints, i, tool, frames.last(), reach, parameters),
+            true => {
+                let before = joints[i].parent.map(|parent| &frames[index(parent)]);
+                let next = joints[i + 1..].iter().find(|joint| joint.parent.is_some_and(|parent| index(parent) == i));
+                let end = if i == index(tip) { tool } else { &bare };
+                frame(&joints[i], before, next, end, reach, parameters)
+            }
             false => Placement::identity(),
         };
         frames.push(frame);
@@ -40,8 +48,8 @@ pub(super) fn lay(joints: &mut [Joint], tool: &Pose, anywhere: bool, parameters:
     for i in 0..joints.len() {
         let row = &joints[i].row;
         let after = row.after.frame.clone();
-        let placement = match i.checked_sub(1) {
-            Some(parent) => joints[parent].link_frame.then(&row.before.frame),
+        let placement = match joints[i].parent {
+            Some(parent) => joints[index(parent)].link_frame.then(&row.before.frame),
             None => row.before.frame.clone(),
         };
         if anywhere {
@@ -62,16 +70,23 @@ fn value(polynomial: &Polynomial, parameters: &[Parameter]) -> f64 {
     polynomial.evaluate(&|id| parameters[id.0 as usize].nominal.clone()).to_f64()
 }
 
-/// Joint frame i in the frame in which the row has its axis. `before`: joint frame i - 1, likewise.
-fn frame(joints: &[Joint], i: usize, tool: &Pose, before: Option<&Placement>, reach: f64, parameters: &[Parameter]) -> Placement {
-    let u = &joints[i].row.axis;
-    let next = joints.get(i + 1);
-    let onward = next.map_or(&tool.frame, |joint| &joint.row.before.frame);
+/// A joint frame in the frame in which the row has its axis. `before`: that of the parent, likewise; `next`: its first child; `end`: the frame at
+/// the end of the chain, if it carries none.
+fn frame(
+    joint: &Joint,
+    before: Option<&Placement>,
+    next: Option<&Joint>,
+    end: &Pose,
+    reach: f64,
+    parameters: &[Parameter],
+) -> Placement {
+    let u = &joint.row.axis;
+    let onward = next.map_or(&end.frame, |joint| &joint.row.before.frame);
     let e_z = [Number::zero(), Number::zero(), Number::one()];
     let v = onward.direction(next.map_or(&e_z, |joint| &joint.row.axis));
     let p = &onward.translation;
-    // Joint frame i - 1 in this frame.
-    let before = before.map(|frame| joints[i].row.before.frame.inverse().then(frame));
+    // The parent's joint frame in this frame.
+    let before = before.map(|frame| joint.row.before.frame.inverse().then(frame));
     let x_before = before.as_ref().map(|frame| column(frame, 0));
 
     let n = cross(u, &v);

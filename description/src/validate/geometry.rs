@@ -118,15 +118,14 @@ fn rounded(value: f64, digits: i32) -> f64 {
     (value * scale).round() / scale
 }
 
-/// The row of a joint; faults are reported. `base`: the pose before the first row.
+/// The row of a joint; faults are reported.
 pub(super) fn row(
     joint: &JointDescription,
     called: &str,
-    base: Option<&Pose>,
     convention: Option<Convention>,
     context: &mut Context<'_>,
 ) -> Option<Row> {
-    let row = match convention {
+    match convention {
         Some(Convention::Urdf) => {
             let origin = pose(joint.origin.as_ref(), &format!("the origin of joint {called}"), context);
             let axis = joint.axis.as_ref().and_then(|axis| {
@@ -134,7 +133,7 @@ pub(super) fn row(
                 let direction = context.numbers(&axis.value)?;
                 unit_vector(direction, axis.span, &format!("the axis of joint {called}"), help, context)
             });
-            Row { before: origin?, axis: axis?, after: Pose::identity() }
+            Some(Row { before: origin?, axis: axis?, after: Pose::identity() })
         }
         convention => {
             let alpha = sine_cosine(&joint.alpha, &format!("alpha of joint {called}"), context);
@@ -147,16 +146,13 @@ pub(super) fn row(
             let product = |two: [Placement; 2]| two[0].then(&two[1]);
             let axis = [Number::zero(), Number::zero(), Number::one()];
             if convention == Convention::Standard {
-                Row { before: Pose::new(vec![product(turn)]), axis, after: Pose::new(vec![product(twist)]) }
+                Some(Row { before: Pose::new(vec![product(turn)]), axis, after: Pose::new(vec![product(twist)]) })
             } else {
                 let before = vec![product(twist), product(turn)];
-                Row { before: Pose::new(before), axis, after: Pose::identity() }
+                Some(Row { before: Pose::new(before), axis, after: Pose::identity() })
             }
         }
-    };
-    let Some(base) = base.filter(|base| !base.elements.is_empty()) else { return Some(row) };
-    let before = Pose::new(base.elements.iter().chain(&row.before.elements).cloned().collect());
-    Some(Row { before, ..row })
+    }
 }
 
 /// A frame in another, the identity where the file gives none; faults are reported. `what`: of what, as in "the tool".

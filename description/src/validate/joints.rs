@@ -4,7 +4,7 @@ use std::cmp::Ordering;
 
 use super::bodies::{self, optional_not_negative, warn_of_massless};
 use super::number::text_of;
-use super::{call, geometry, zeros, Context};
+use super::{call, geometry, parents, zeros, Context};
 use crate::description::{
     Convention, JointDescription, LimitsDescription, MotorDescription, SpringDescription, StribeckDescription,
 };
@@ -14,7 +14,7 @@ use crate::exact::{Number, Polynomial};
 use crate::kinds::JointKind;
 use crate::manipulator::{Joint, Limits, LinkId, Motor, Pose, Spring, Stribeck};
 
-/// The joint; faults are reported. `base`: the pose before the first row.
+/// The joint; faults are reported. `base`: the pose before rows on the base.
 pub(super) fn joint(
     i: usize,
     description: &JointDescription,
@@ -24,7 +24,9 @@ pub(super) fn joint(
     context: &mut Context<'_>,
 ) -> Option<Joint> {
     let called = call(i, description);
-    let row = geometry::row(description, &called, base, convention, context);
+    let start = parents::start(description, &called, base, context);
+    let row = geometry::row(description, &called, convention, context);
+    let row = start.zip(row).map(|(start, row)| row.behind(start));
     let kind = description.kind.as_ref().map(|k| k.value);
     let link = description.link.as_ref().and_then(|link| bodies::parts(link, &format!("the link of joint {called}"), context));
     let limits = limits(&description.limits, kind, &called, context);

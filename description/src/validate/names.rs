@@ -1,5 +1,6 @@
 //! Names: of the robot, of joints, of parameters.
 
+use super::parents::BASE;
 use super::FirstSeen;
 use crate::description::RobotDescription;
 use crate::diagnostic::{Code, Diagnostic, Diagnostics};
@@ -39,9 +40,17 @@ pub(super) fn check(description: &RobotDescription, diagnostics: &mut Diagnostic
             diagnostics.push(Diagnostic::new(Code::ReservedName, parameter.name.span, message, "reserved", help));
         }
     }
+    let joints = || description.joints.iter().flat_map(|joints| &joints.value);
+    let on_base = joints().filter_map(|joint| joint.parent.as_ref()).find(|parent| parent.value == BASE);
     let mut seen = FirstSeen::new();
-    for name in description.joints.iter().flat_map(|joints| &joints.value).filter_map(|joint| joint.name.as_ref()) {
+    for name in joints().filter_map(|joint| joint.name.as_ref()) {
         check_name(name, "a joint", diagnostics);
+        if let Some(parent) = on_base.filter(|_| name.value == BASE) {
+            let message = "`base` cannot be the name of a joint here: it is the base where `parent` names it";
+            let help = format!("choose another name, such as `{BASE}_`");
+            let fault = Diagnostic::new(Code::ReservedName, name.span, message, "reserved", help);
+            diagnostics.push(fault.also(parent.span, "on the base"));
+        }
         if let Some(first) = seen.get(name.value.as_str()) {
             let message = format!("two joints are called `{}`", excerpt(&name.value));
             let help = "give each joint a name of its own: messages and tables call it by that name";

@@ -72,11 +72,13 @@ const GRAVITY_PART: f64 = 0.02;
 /// Data about all joints together.
 struct Arm<'d> {
     joints: &'d [JointDescription],
-    /// |a| + |d| of each row, m.
+    /// The joint that carries each one.
+    parents: &'d [Option<usize>],
+    /// |a| + |d| of each row, m, and of its origin and its mount.
     lengths: Vec<f64>,
     /// How far each joint slides, m; infinite where it has no limits.
     strokes: Vec<f64>,
-    /// Sum of all |a| and |d| and of the tool, and of strokes where these are next to nothing; m.
+    /// Sum of these along the longest branch, with the tool, and of strokes where these are next to nothing; m.
     reach: f64,
     /// Masses of all links, kg.
     masses: Vec<f64>,
@@ -96,7 +98,7 @@ struct Body<'b> {
 }
 
 /// Warns of what is implausible in a description without errors.
-pub(super) fn check(description: &RobotDescription, context: &mut Context<'_>) {
+pub(super) fn check(description: &RobotDescription, parents: &[Option<usize>], context: &mut Context<'_>) {
     let Some(joints) = description.joints.as_ref().map(|list| list.value.as_slice()) else { return };
     gravity(description, context);
     let mut lengths = Vec::new();
@@ -107,7 +109,8 @@ pub(super) fn check(description: &RobotDescription, context: &mut Context<'_>) {
         };
         let origin =
             joint.origin.as_ref().map_or(0.0, |pose| translation(pose, &format!("the origin of joint {called}"), context));
-        lengths.push(of((&joint.a, "a"), context) + of((&joint.d, "d"), context) + origin);
+        let mount = joint.mount.as_ref().map_or(0.0, |pose| translation(pose, &format!("the mount of joint {called}"), context));
+        lengths.push(of((&joint.a, "a"), context) + of((&joint.d, "d"), context) + origin + mount);
         for (value, name) in [(&joint.alpha, "alpha"), (&joint.theta, "theta")] {
             dust(value, &format!("`{name}` of joint {called}"), "rad", context);
         }
@@ -116,9 +119,16 @@ pub(super) fn check(description: &RobotDescription, context: &mut Context<'_>) {
         translation(base, "the base", context);
     }
     check_outlying_length(joints, context);
-    let mut reach: f64 = lengths.iter().sum();
     let tool = description.tool.as_ref().map(|tool| (translation(tool, "the tool", context), tool.key));
-    reach += tool.map_or(0.0, |(length, _)| length);
+    // How far each joint is from the base at most; the tool is on the last one.
+    let mut far: Vec<f64> = Vec::new();
+    for (length, parent) in lengths.iter().zip(parents) {
+        far.push(parent.map_or(0.0, |parent| far[parent]) + length);
+    }
+    if let (Some(last), Some((length, _))) = (far.last_mut(), tool) {
+        *last += length;
+    }
+    let mut reach = far.into_iter().fold(0.0, f64::max);
     check_reach(joints, &lengths, tool, reach, context);
     let strokes: Vec<f64> = joints.iter().map(|joint| stroke(joint, context)).collect();
     if reach < 2.0 * SMALL_REACH {
@@ -127,7 +137,7 @@ pub(super) fn check(description: &RobotDescription, context: &mut Context<'_>) {
     let mass =
         |joint: &JointDescription, context: &mut Context<'_>| joint.link.as_ref().map_or(0.0, |link| number(&link.mass, context));
     let masses = joints.iter().map(|joint| mass(joint, context)).collect();
-    let arm = Arm { joints, lengths, strokes, reach, masses };
+    let arm = Arm { joints, parents, lengths, strokes, reach, masses };
     let doubted = arm.check_masses(context);
     arm.check_axes(description.convention.as_ref().map(|convention| convention.value), context);
     let mut doubtful = doubted;
@@ -522,10 +532,11 @@ impl Arm<'_> {
         }
     }
 
-    /// The span of the link of joint `i`, m: from the joint before it to the one after it, and about its centre of mass.
+    /// The span of the link of joint `i`, m: from the joint before it to the farthest of those that it carries, and about its centre of mass.
     fn span(&self, i: usize, com: f64) -> f64 {
-        let part = |i: usize| self.lengths.get(i).unwrap_or(&0.0) + self.strokes.get(i).unwrap_or(&0.0);
-        part(i) + part(i + 1) + 2.0 * com + HOUSING
+        let part = |i: usize| self.lengths[i] + self.strokes[i];
+        let carried = (i + 1..self.joints.len()).filter(|&next| self.parents[next] == Some(i));
+        part(i) + carried.map(part).fold(0.0, f64::max) + 2.0 * com + HOUSING
     }
 }
 

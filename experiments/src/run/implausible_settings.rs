@@ -129,18 +129,26 @@ impl<R: Functions<N, P>, W, const N: usize, const M: usize, const P: usize> Inst
     }
 }
 
+/// The joints that move the end effector, from the base on: J has a column of zeros for each other joint.
+pub(super) fn joints_of_end_effector<R: Kinematics<N, Real = f64>, const N: usize>(robot: &R, q: &SVector<f64, N>) -> Vec<usize> {
+    let jacobian = robot.geometric_jacobian(q);
+    (0..N).filter(|&i| jacobian.column(i).iter().any(|entry| *entry != 0.0)).collect()
+}
+
 /// Upper bound of the end effector's distance from the origin of the base, m; infinite for an unlimited prismatic joint.
 fn reach<R: Kinematics<N, Real = f64>, const N: usize>(robot: &R, joints: &[Joint], q: &SVector<f64, N>) -> f64 {
     let origin = |frame: &Matrix4<f64>| Vector3::new(frame[(0, 3)], frame[(1, 3)], frame[(2, 3)]);
-    let mut chain: Vec<Vector3<f64>> = robot.link_frames(q).iter().map(origin).collect();
+    let (moving, frames) = (joints_of_end_effector(robot, q), robot.link_frames(q));
+    let mut chain: Vec<Vector3<f64>> = moving.iter().map(|&i| origin(&frames[i])).collect();
     let tip = Pose::of(robot, q).position;
     chain.push(tip);
     let mut reach: f64 = chain.windows(2).map(|pair| (pair[1] - pair[0]).norm()).sum();
     let jacobian = robot.geometric_jacobian(q);
-    let [velocity, axis]: [Vector3<f64>; 2] = [0, 3].map(|row| jacobian.fixed_view::<3, 1>(row, 0).into_owned());
+    let first_joint = moving.first().copied().unwrap_or(0);
+    let [velocity, axis]: [Vector3<f64>; 2] = [0, 3].map(|row| jacobian.fixed_view::<3, 1>(row, first_joint).into_owned());
     // The axis z of the first joint, 0 if it is prismatic. (z × (p_e - a)) × z is the component of p_e - a perpendicular to z.
     let along = |p: Vector3<f64>| axis * axis.dot(&p);
-    let foot = if joints[0].revolute { tip - along(tip) - velocity.cross(&axis) } else { Vector3::zeros() };
+    let foot = if joints[first_joint].revolute { tip - along(tip) - velocity.cross(&axis) } else { Vector3::zeros() };
     let (first, height) = (chain[0] - foot, along(chain[0]));
     reach += (foot.norm() + (first - height).norm()).hypot(height.norm());
     for (joint, q) in joints.iter().zip(q.iter()).filter(|(joint, _)| !joint.revolute) {

@@ -7,6 +7,7 @@ use armgen_runtime::nalgebra::{SMatrix, SVector, Vector3};
 use armgen_runtime::reference::Pose;
 use armgen_runtime::task::{Row, Task};
 
+use super::implausible_settings::joints_of_end_effector;
 use super::instance::Functions;
 use super::Instance;
 use crate::model::{Channel, PostureQuantity, Postures, Quantity, Record, Shape, Shapes};
@@ -37,7 +38,8 @@ impl<R: Functions<N, P>, W, const N: usize, const M: usize, const P: usize> Inst
         let j = self.plane(plane, q);
         let origin = |t: &armgen_runtime::nalgebra::Matrix4<f64>| Vector3::new(t[(0, 3)], t[(1, 3)], t[(2, 3)]);
         let mut points = vec![Vector3::zeros()];
-        points.extend(self.nominal.link_frames(q).iter().map(origin));
+        let frames = self.nominal.link_frames(q);
+        points.extend(joints_of_end_effector(&self.nominal, q).into_iter().map(|i| origin(&frames[i])));
         points.push(origin(&self.nominal.direct_kinematics(q)));
         Shape { points, velocity: velocity_ellipsoid(&j), force: force_ellipsoid(&j) }
     }

@@ -27,7 +27,7 @@ fn of_element(element: &PoseElement) -> Vec<&str> {
 /// In the row of a joint.
 pub(super) fn of_row(joint: &JointDescription) -> Vec<&str> {
     let mut names = of_values([&joint.a, &joint.alpha, &joint.d, &joint.theta]);
-    names.extend(of_pose(joint.origin.as_ref()));
+    names.extend([&joint.mount, &joint.origin].into_iter().flat_map(|pose| of_pose(pose.as_ref())));
     names.extend(of_values(joint.axis.iter().flat_map(|axis| &axis.value)));
     names
 }

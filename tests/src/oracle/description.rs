@@ -77,9 +77,10 @@ impl From<RegressorText> for RegressorChoice {
 #[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 struct JointText {
-    #[serde(rename = "name")]
-    _name: String,
+    name: String,
     r#type: String,
+    parent: Option<String>,
+    mount: Option<PoseText>,
     a: Option<Text>,
     alpha: Option<Text>,
     d: Option<Text>,
@@ -418,11 +419,20 @@ impl Description {
             .joints
             .iter()
             .enumerate()
-            .map(|(i, j)| joint(j, (i == 0).then(|| self.base.clone()).flatten(), modified, &numbers))
+            .map(|(i, j)| {
+                let on = match j.parent.as_deref() {
+                    None => i,
+                    Some("base") => 0,
+                    Some(parent) => 1 + self.joints[..i].iter().position(|j| j.name == parent).ok_or("no such parent")?,
+                };
+                let base = if on == 0 { self.base.clone() } else { None };
+                let list = [base, j.mount.clone()].into_iter().flatten().flat_map(|pose| pose.0).collect();
+                let start = numbers.pose(&Some(PoseText(list)))?;
+                joint(j, (on, start), modified, &numbers)
+            })
             .collect::<Result<_, String>>()?;
         Ok(Model {
             modified,
-            base: numbers.pose(&self.base)?,
             gravity: numbers.three(&Some(self.gravity.clone()))?.unwrap_or_default(),
             joints,
             tool: numbers.pose(&self.tool)?,
@@ -431,7 +441,8 @@ impl Description {
     }
 }
 
-fn joint(text: &JointText, base: Option<PoseText>, modified: bool, numbers: &Numbers) -> Result<Joint, String> {
+/// `on`: the frame that carries the joint; `start`: the frame there that its row starts from.
+fn joint(text: &JointText, (on, start): (usize, Placed), modified: bool, numbers: &Numbers) -> Result<Joint, String> {
     let prismatic = match text.r#type.as_str() {
         "revolute" => false,
         "prismatic" => true,
@@ -449,7 +460,7 @@ fn joint(text: &JointText, base: Option<PoseText>, modified: bool, numbers: &Num
         None if modified => [0.0, -row[1].sin(), row[1].cos()],
         None => [0.0, 0.0, 1.0],
     };
-    let own_axis = turned(&numbers.pose(&base)?.0, own_axis);
+    let own_axis = turned(&start.0, own_axis);
     let motor = |motor: &MotorText| -> Result<Motor, String> {
         let axis = numbers.three(&motor.axis)?.unwrap_or(own_axis);
         let length = axis.iter().map(|x| x * x).sum::<f64>().sqrt();
@@ -464,6 +475,8 @@ fn joint(text: &JointText, base: Option<PoseText>, modified: bool, numbers: &Num
     };
     Ok(Joint {
         prismatic,
+        on,
+        start,
         row,
         origin,
         link: numbers.lumped(&text.link)?,

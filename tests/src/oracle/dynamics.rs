@@ -55,7 +55,7 @@ impl Model {
         for (i, joint) in self.joints.iter().enumerate() {
             bodies.push((i + 1, posture.frames[i + 1], joint.link));
             if let Some(motor) = &joint.motor {
-                bodies.push((i, posture.frames[i], point(motor.mass, motor.position)));
+                bodies.push((joint.on, posture.frames[joint.on], point(motor.mass, motor.position)));
             }
         }
         if let Some(payload) = self.payload {
@@ -70,8 +70,8 @@ impl Model {
         let mut motions = vec![Motion { w: rest, dw: rest, v: rest, a: constant(gravity.map(|g| -g)) }];
         for (i, joint) in self.joints.iter().enumerate() {
             let (z, o) = posture.axes[i];
-            let (from, to) = (posture.frames[i].p, posture.frames[i + 1].p);
-            let previous = motions[i];
+            let (from, to) = (posture.frames[joint.on].p, posture.frames[i + 1].p);
+            let previous = motions[joint.on];
             motions.push(if joint.prismatic {
                 let carried = previous.at(sub(to, from));
                 let coriolis = scale(S::from(2.0) * dq[i], cross(previous.w, z));
@@ -112,11 +112,12 @@ impl Model {
         for (i, joint) in self.joints.iter().enumerate() {
             let Some(motor) = &joint.motor else { continue };
             let (k, inertia) = (S::from(motor.ratio), S::from(motor.inertia.unwrap_or(0.0)));
-            let z = posture.frames[i].turn(constant(motor.axis));
-            let Motion { w, dw, .. } = motions[i];
+            let on = joint.on;
+            let z = posture.frames[on].turn(constant(motor.axis));
+            let Motion { w, dw, .. } = motions[on];
             let acceleration = inertia * (dot(z, dw) + k * ddq[i]);
             let momentum = inertia * (dot(z, w) + k * dq[i]);
-            moments[i] = add(moments[i], add(scale(acceleration, z), scale(momentum, cross(w, z))));
+            moments[on] = add(moments[on], add(scale(acceleration, z), scale(momentum, cross(w, z))));
             tau[i] = k * acceleration;
         }
 
@@ -132,8 +133,9 @@ impl Model {
                 false => dot(z, add(moments[i + 1], cross(sub(p, o), force))),
             };
             tau[i] = tau[i] + projection;
-            forces[i] = add(forces[i], force);
-            moments[i] = add(moments[i], add(moments[i + 1], cross(sub(p, posture.frames[i].p), force)));
+            let on = self.joints[i].on;
+            forces[on] = add(forces[on], force);
+            moments[on] = add(moments[on], add(moments[i + 1], cross(sub(p, posture.frames[on].p), force)));
         }
         tau
     }
@@ -275,7 +277,8 @@ impl Model {
         for (i, joint) in self.joints.iter().enumerate() {
             twice = twice + S::from(joint.armature.unwrap_or(0.0)) * dq[i] * dq[i];
             let Some(motor) = &joint.motor else { continue };
-            let spin = dot(posture.frames[i].turn(constant(motor.axis)), motions[i].w) + S::from(motor.ratio) * dq[i];
+            let spin =
+                dot(posture.frames[joint.on].turn(constant(motor.axis)), motions[joint.on].w) + S::from(motor.ratio) * dq[i];
             twice = twice + S::from(motor.inertia.unwrap_or(0.0)) * spin * spin;
         }
         S::from(0.5) * twice

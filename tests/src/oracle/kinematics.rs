@@ -28,9 +28,7 @@ impl<S: Scalar> Posture<S> {
             let q_own = q;
             let [a, alpha, d, theta] = joint.row.map(S::from);
             let (d, theta) = if joint.prismatic { (d + q, theta) } else { (d, theta + q) };
-            let previous = *frames.last().expect("the base is there");
-            // The rotor of joint 1 is mounted on the base itself; the row starts from the frame that the file gives.
-            let previous = if frames.len() == 1 { previous.then(&placed(model.base)) } else { previous };
+            let previous = frames[joint.on].then(&placed(joint.start));
             if let Some((origin, axis)) = joint.origin {
                 let still = previous.then(&placed(origin));
                 let u = still.turn(constant(axis));
@@ -61,7 +59,11 @@ impl<S: Scalar> Posture<S> {
     /// Rows of the geometric Jacobian of the end effector's origin: linear, then angular.
     fn jacobian(&self, model: &Model) -> [Vec<S>; 6] {
         let mut rows: [Vec<S>; 6] = Default::default();
-        for (joint, &(z, o)) in model.joints.iter().zip(&self.axes) {
+        for (i, (joint, &(z, o))) in model.joints.iter().zip(&self.axes).enumerate() {
+            if !model.carries(i + 1, model.dof()) {
+                rows.iter_mut().for_each(|row| row.push(S::from(0.0)));
+                continue;
+            }
             let (linear, angular) = match joint.prismatic {
                 true => (z, constant([0.0; 3])),
                 false => (cross(z, sub(self.end.p, o)), z),

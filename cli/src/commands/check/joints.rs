@@ -34,8 +34,13 @@ pub(super) fn rows(source: &Source, description: &RobotDescription, manipulator:
             Some(row) if convention == Some(Convention::Urdf) => (Default::default(), urdf_row(source, row)),
             Some(row) => (dh_row(source, row, i, manipulator, convention == Some(Convention::Modified)), Default::default()),
         };
+        // A joint hangs on the one above, but for those that begin a branch.
+        let on = match joint.parent.map(|parent| parent.0 as usize) {
+            parent if parent == i.checked_sub(1) => String::new(),
+            parent => format!(", on {}", parent.map_or("the base", |parent| &manipulator.joints[parent].name)),
+        };
         table.row([
-            format!("{} {}", i + 1, joint.name),
+            format!("{} {}{on}", i + 1, joint.name),
             if revolute { "revolute" } else { "prismatic" }.into(),
             a,
             alpha,

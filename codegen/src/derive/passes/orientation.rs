@@ -65,8 +65,12 @@ impl Angle {
 /// Chooses axes for each run of joints with parallel axes.
 pub(super) fn parallel_axes(pool: &mut Pool, arm: &mut Arm, plan: &mut Plan) {
     let children = |arm: &Arm, i: usize| -> Vec<usize> { (0..arm.dof()).filter(|&c| arm.joints[c].parent == Some(i)).collect() };
-    let mut first = 0;
-    while first < arm.dof() {
+    // In a tree the joints of a run need not be consecutive, and a joint in two runs would be described in new axes twice.
+    let mut taken = vec![false; arm.dof()];
+    for first in 0..arm.dof() {
+        if taken[first] {
+            continue;
+        }
         let mut run = vec![first];
         while let [only] = children(arm, *run.last().expect("not empty"))[..] {
             if arm.joints[only].fixed != IDENTITY {
@@ -74,7 +78,8 @@ pub(super) fn parallel_axes(pool: &mut Pool, arm: &mut Arm, plan: &mut Plan) {
             }
             run.push(only);
         }
-        let (length, last) = (run.len(), *run.last().expect("not empty"));
+        run.iter().for_each(|&i| taken[i] = true);
+        let length = run.len();
         if length > 1 {
             // Way 0: each link in its own axes; 1: all in those of the link before; 1 + k: in those of link k of the run.
             let way = plan.way(Pass::ParallelAxes, Place::Joint(first), length + 2);
@@ -83,8 +88,6 @@ pub(super) fn parallel_axes(pool: &mut Pool, arm: &mut Arm, plan: &mut Plan) {
                 orient(pool, arm, &run, way - 1, sums);
             }
         }
-        // In a tree the joints of a run need not be consecutive. If they are, the search continues after the last.
-        first = if run.iter().enumerate().all(|(k, &i)| i == first + k) { last + 1 } else { first + 1 };
     }
 }
 

@@ -173,7 +173,7 @@ pub fn forward_dynamics_derivatives(pool: &mut Pool, arm: &Arm, plan: &mut Plan)
             pool.sub(tau, bias)
         })
         .collect();
-    let factors = LdlFactors::new(pool, &b);
+    let factors = LdlFactors::of_inertia(pool, arm, &b);
     let motion = Motion { accelerations: factors.solve(pool, &right), ..Motion::plain(pool, arm) };
     let inverse = factors.inverse(pool);
     let (by_q, by_rates) = inverse_dynamics_derivatives(pool, arm, plan, &motion);

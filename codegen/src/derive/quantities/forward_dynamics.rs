@@ -46,5 +46,5 @@ pub fn forward_dynamics(pool: &mut Pool, arm: &Arm, plan: &mut Plan) -> Vec<Expr
     add_load_friction(pool, arm, plan, &mut bias);
     let tau = arm.symbols(pool, Symbol::Torque);
     let right: Vec<ExprId> = (0..arm.dof()).map(|i| pool.sub(tau[i], bias[i])).collect();
-    LdlFactors::new(pool, &b).solve(pool, &right)
+    LdlFactors::of_inertia(pool, arm, &b).solve(pool, &right)
 }

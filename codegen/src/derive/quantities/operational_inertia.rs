@@ -49,7 +49,7 @@ pub fn operational_inertia(pool: &mut Pool, arm: &Arm, plan: &mut Plan, task: &[
     let jacobian = geometric_jacobian(pool, arm);
     let rows: Vec<Vec<ExprId>> = task.iter().map(|&row| jacobian[row].clone()).collect();
     let b = inertia_matrix(pool, arm, plan);
-    let mobility = LdlFactors::new(pool, &b).congruent(pool, &rows);
+    let mobility = LdlFactors::of_inertia(pool, arm, &b).congruent(pool, &rows);
     LdlFactors::new(pool, &mobility).inverse(pool)
 }
 

@@ -26,25 +26,26 @@ const TELLING: f64 = 0.15;
 impl Arm<'_> {
     /// Two joints about one line.
     pub(super) fn check_axes(&self, convention: Option<Convention>, context: &mut Context<'_>) {
-        let shift = match convention {
-            Some(Convention::Standard) => 0,
-            Some(Convention::Modified) => 1,
+        let standard = match convention {
+            Some(Convention::Standard) => true,
+            Some(Convention::Modified) => false,
             _ => return,
         };
         let revolute = |joint: &JointDescription| joint.kind.as_ref().is_some_and(|kind| kind.value == JointKind::Revolute);
-        for i in 1..self.joints.len() {
-            let (first, second) = (&self.joints[i - 1], &self.joints[i]);
+        for (i, second) in self.joints.iter().enumerate() {
+            let Some(before) = self.parents[i].filter(|_| second.mount.is_none()) else { continue };
+            let first = &self.joints[before];
             // The row that holds a and alpha from the axis of the first to that of the second.
-            let row = &self.joints[i - 1 + shift];
+            let row = if standard { first } else { second };
             let (Some(alpha), true) = (&row.alpha, revolute(first) && revolute(second)) else { continue };
             let sine = number(&row.alpha, context).sin();
             if number(&row.a, context).abs() > ONE_LINE || sine.abs() > ONE_LINE {
                 continue;
             }
-            let message = format!("the joints {} and {} turn about one line", call(i - 1, first), call(i, second));
-            let help = match shift {
-                1 => "a row of the modified convention holds a and alpha of the link before it, those that the books call a_{i-1}, alpha_{i-1}: is this table one of the standard convention?",
-                _ => "a row of the standard convention holds a and alpha of its own link, up to the next axis: is this table one of the modified convention?",
+            let message = format!("the joints {} and {} turn about one line", call(before, first), call(i, second));
+            let help = match standard {
+                false => "a row of the modified convention holds a and alpha of the link before it, those that the books call a_{i-1}, alpha_{i-1}: is this table one of the standard convention?",
+                true => "a row of the standard convention holds a and alpha of its own link, up to the next axis: is this table one of the modified convention?",
             };
             context.report(Code::CoincidentAxes, alpha.span, message, "parallel to the axis before it, and a is 0", help);
         }
