@@ -58,7 +58,9 @@ pub struct RobotDescription {
     pub joints: Option<Spanned<Vec<JointDescription>>>,
     /// The frame that rows on the base start from, in the base frame.
     pub base: Option<PoseDescription>,
-    /// End-effector frame in the last link's frame.
+    /// The joint whose link carries the end effector; if absent, the last one.
+    pub tip: Option<Spanned<String>>,
+    /// End-effector frame in that link's frame.
     pub tool: Option<PoseDescription>,
     /// Load in the end-effector frame.
     pub payload: Option<BodyDescription>,

@@ -202,6 +202,8 @@ codes! {
         LateParent Error "late-parent",
         /// `mount` beside no `parent`.
         MountWithoutParent Error "mount-without-parent",
+        /// `tip` names no joint.
+        UnknownTipJoint Error "unknown-tip-joint",
         /// A mass below 0.
         NegativeMass Error "negative-mass",
         /// An inertia tensor that is not positive semidefinite.

@@ -41,7 +41,7 @@ use crate::description::{Convention, JointDescription, RobotDescription};
 use crate::diagnostic::{Code, Diagnostic, Diagnostics};
 use crate::exact::Polynomial;
 use crate::kinds::{Scalar, MAX_JOINTS};
-use crate::manipulator::{Joint, LinkId, Manipulator, Pose, RegressorChoice};
+use crate::manipulator::{Joint, Manipulator, Pose, RegressorChoice};
 use crate::source::{Source, Span};
 pub use allow::warning;
 pub use bodies::impossible_inertia;
@@ -129,6 +129,7 @@ fn validate(
     let joints = joints(description, &mut context);
     let tool = geometry::pose(description.tool.as_ref(), "the tool", &mut context);
     let payload = description.payload.as_ref().map(|p| bodies::part(p, Some(Pose::identity()), "the payload", &mut context));
+    let tip = choices::tip(description, context.diagnostics);
     let task = choices::task(description, context.diagnostics);
     let regressor = choices::regressor(description, &mut context);
     if let (Some(gravity), Some(regressor)) = (&gravity, &regressor) {
@@ -143,11 +144,10 @@ fn validate(
     if context.diagnostics.has_errors() {
         return None;
     }
-    let (mut joints, tool) = (joints?, tool?);
+    let (mut joints, tool, tip) = (joints?, tool?, tip?);
     let parents: Vec<Option<usize>> = joints.iter().map(|joint| joint.parent.map(|parent| parent.0 as usize)).collect();
-    plausible::check(description, &parents, &mut context);
+    plausible::check(description, &parents, tip, &mut context);
     let symbols = context.evaluator.parameters.symbols();
-    let tip = LinkId(u32::try_from(joints.len() - 1).expect("the number of joints is bounded"));
     frames::lay(&mut joints, tip, &tool, convention == Some(Convention::Urdf), &symbols);
     let places = places::gather(description, context.evaluator.parameters.places_of_symbols());
     let mut manipulator = Manipulator {

@@ -134,6 +134,9 @@ impl<'d> Converter<'d> {
         for (k, (joint, row)) in joints.iter().zip(&rows.rows).enumerate() {
             self.joint(joint, k, row, parents[k].map(|parent| &rows.rows[parent]), &mut text);
         }
+        if let Some(tip) = &description.tip {
+            text.push(format!("tip: {}", tip.value));
+        }
         text.extend(poses("tool", &rows.tool));
         if let Some(payload) = &description.payload {
             text.push("payload:".into());
@@ -236,10 +239,11 @@ impl<'d> Converter<'d> {
         self.frozen.extend([&description.base, &description.tool].into_iter().flat_map(|pose| names::of_pose(pose.as_ref())));
         let chains = self.chains();
         let several_on_base = self.arm.parents().filter(Option::is_none).count() > 1;
+        let tip = self.arm.tip.0 as usize;
         let mut all = Rows { base: Vec::new(), rows: Vec::new(), tool: Vec::new() };
         let mut rows: Vec<Option<Row<'d>>> = self.arm.joints.iter().map(|_| None).collect();
         for chain in chains {
-            let is_last = chain.last() == Some(&(self.arm.tip.0 as usize));
+            let is_last = chain.last() == Some(&tip);
             let end = if is_last { self.nominal(&self.arm.tool.frame) } else { Placement::identity() };
             let Rows { base, rows: of_chain, tool } = self.normals_of(to, &chain, &end)?;
             let first = chain[0];
@@ -262,6 +266,10 @@ impl<'d> Converter<'d> {
             }
         }
         all.rows = rows.into_iter().collect::<Option<_>>()?;
+        if self.arm.parents().any(|parent| parent == Some(tip)) {
+            // The end effector is beside a chain, in the old link frame.
+            all.tool = all.rows[tip].poses.iter().cloned().chain(self.elements(description.tool.as_ref())).collect();
+        }
         Some(all)
     }
 
@@ -525,6 +533,7 @@ impl<'d> Converter<'d> {
             parameters: _,
             joints: _,
             base: _,
+            tip: _,
             tool: _,
             payload: _,
             task,

@@ -109,7 +109,8 @@ pub fn export(source: &Source) -> (Option<Exported>, Diagnostics) {
         let values = NominalValues::new(&description);
         let writer = Writer { source, values, rounded: 0, names: BTreeSet::new(), parts: Vec::new(), lines: Vec::new() };
         let parents = valid.iter().flat_map(|(arm, _)| arm.parents()).collect::<Vec<_>>();
-        writer.write(&description, &parents)
+        let tip = valid.as_ref().map_or(0, |(arm, _)| arm.tip.0 as usize);
+        writer.write(&description, &parents, tip)
     });
     (exported, diagnostics)
 }
@@ -126,8 +127,8 @@ struct Writer<'d> {
 }
 
 impl Writer<'_> {
-    /// `parents`: the joint that carries each one.
-    fn write(mut self, description: &RobotDescription, parents: &[Option<usize>]) -> Exported {
+    /// `parents`: the joint that carries each one; `tip`: the joint whose link carries the end effector.
+    fn write(mut self, description: &RobotDescription, parents: &[Option<usize>], tip: usize) -> Exported {
         let joints: &[JointDescription] = description.joints.as_ref().map_or(&[], |joints| &joints.value);
         let convention = description.convention.as_ref().map_or(Convention::Urdf, |convention| convention.value);
         self.names.extend(["base".to_owned(), "tool".to_owned()]);
@@ -166,7 +167,7 @@ impl Writer<'_> {
             }
             links.push((moving, after));
         }
-        if let Some((link, mut before)) = links.pop() {
+        if let Some((link, mut before)) = links.get(tip).cloned() {
             before.extend(self.poses(description.tool.as_ref()));
             self.fixed("tool", &link, before, None);
         }
@@ -422,6 +423,7 @@ impl Writer<'_> {
             parameters,
             joints: _,
             base: _,
+            tip: _,
             tool: _,
             payload,
             task,

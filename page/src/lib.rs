@@ -169,6 +169,7 @@ fn data(
         "gravityIsArgument": module.gravity_is_argument,
         "base": rows::base(manipulator, description),
         "rows": rows.iter().map(row).collect::<Vec<_>>(),
+        "tip": manipulator.tip.0,
         "tool": bodies::tool(manipulator),
         "bodies": bodies,
         "task": module.task,

@@ -30,9 +30,16 @@ pub(crate) fn table(rows: &[Row], convention: Convention, warnings: &Warnings<'_
     text += "<th scope=\"col\">limits</th><th scope=\"col\">line</th></tr></thead>\n<tbody>\n";
     for (i, row) in rows.iter().enumerate() {
         let number = i + 1;
+        // A joint hangs on the one above, but for those that begin a branch.
+        let on = match &row.branch {
+            Some((parent, _)) if *parent != i.checked_sub(1) => {
+                format!(", on {}", parent.map_or("the base".to_owned(), |parent| escape(&rows[parent].name)))
+            }
+            _ => String::new(),
+        };
         let _ = write!(
             text,
-            "<tr data-row=\"{number}\" tabindex=\"0\"><th scope=\"row\">{number} {}</th><td>{}</td>",
+            "<tr data-row=\"{number}\" tabindex=\"0\"><th scope=\"row\">{number} {}{on}</th><td>{}</td>",
             escape(&row.name),
             if row.revolute { "revolute" } else { "prismatic" },
         );

@@ -107,7 +107,7 @@ export class Arm {
                 row.joint.between(along(joint, -this.half, axis), along(joint, this.half, axis));
             }
         });
-        this.tool.between(origin(frames[frames.length - 1]), origin(end));
+        this.tool.between(origin(frames[data.tip]), origin(end));
         this.points.push(origin(end));
     }
 }

@@ -49,9 +49,11 @@ pub struct Model {
     pub modified: bool,
     /// Acceleration of gravity in the base frame.
     pub gravity: [f64; 3],
-    /// Joints in the order of the file, each with the link that it moves; the last one carries the end effector.
+    /// Joints in the order of the file, each with the link that it moves.
     pub joints: Vec<Joint>,
-    /// End-effector frame in the last link's frame: rotation by rows, translation.
+    /// The frame of the link that carries the end effector, counted as `on` of joints.
+    pub tip: usize,
+    /// End-effector frame in that: rotation by rows, translation.
     pub tool: Placed,
     /// Rigid load, in the end-effector frame.
     pub payload: Option<Ten>,

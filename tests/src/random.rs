@@ -240,6 +240,9 @@ pub fn tree(name: &str, dof: usize, random: &mut Random) -> String {
             writeln!(text, "    mount: {}", pose(random, 1)).expect("text");
         }
     }
+    if random.chance(40) {
+        writeln!(text, "tip: joint{}", random.whole(1, joints)).expect("text");
+    }
     text
 }
 

@@ -138,6 +138,31 @@ fn conversion_keeps_motions_and_forces() {
     }
 }
 
+/// The end effector of the other hand, and of a link that carries others; conversion keeps both.
+#[test]
+fn the_tip_is_any_link() {
+    let q = vec![0.3, -0.2, 0.5, 0.7, -0.4, 0.1, 0.9];
+    let arguments = Arguments { dq: q.clone(), ddq: q.clone(), q, ..Arguments::default() };
+    let last = Interpreted::new(TWO_ARMS).expect("valid");
+    for (tip, moving) in [("left_3", &[0, 1, 2, 3][..]), ("right_1", &[0, 4]), ("right_3", &[0, 4, 5, 6])] {
+        let text = format!("{TWO_ARMS}tip: {tip}\n").replace("tool: {xyz: [0, 0, -0.25], rpy: [0, 0, pi]}\n", "");
+        let robot = Interpreted::new(&text).expect("valid");
+        let place = robot.module.joints.iter().position(|joint| joint.name == tip).expect("a joint");
+        let frames = last.call("link_frames", &arguments);
+        let found = robot.call("direct_kinematics", &arguments);
+        assert!(deviation(&found, &frames[16 * place..16 * place + 16]) < REFERENCE, "{tip}");
+        let jacobian = robot.call("geometric_jacobian", &arguments);
+        let moved: Vec<usize> = (0..7).filter(|j| (0..6).any(|row| jacobian[7 * row + j] != 0.0)).collect();
+        assert_eq!(moved, moving, "{tip}");
+        let (converted, _) = armgen_import::convert(&Source::new("robot.yaml", text), Convention::Standard);
+        let other = Interpreted::new(&converted.expect("valid").yaml).expect("valid");
+        for function in ["direct_kinematics", "geometric_jacobian", "inverse_dynamics"] {
+            let off = deviation(&other.call(function, &arguments), &robot.call(function, &arguments));
+            assert!(off < REFERENCE, "{tip} {function}: {off:e}");
+        }
+    }
+}
+
 /// A tree as a URDF is the tree: its chain to the end effector comes back with the same kinematics.
 #[test]
 fn a_urdf_of_a_tree_has_its_branches() {

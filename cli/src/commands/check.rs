@@ -207,13 +207,17 @@ fn arm(source: &Source, description: &RobotDescription, manipulator: &Manipulato
     }
     row("reach", reach::in_words(manipulator));
     let rows: Vec<&str> = manipulator.task.iter().map(|row| row.name()).collect();
-    let (m, n) = (rows.len(), manipulator.dof());
+    let parents: Vec<Option<usize>> = manipulator.parents().collect();
+    let of_end_effector = std::iter::successors(Some(manipulator.tip.0 as usize), |&joint| parents[joint]).count();
+    let (m, n) = (rows.len(), of_end_effector);
     let against = match m.cmp(&n) {
         std::cmp::Ordering::Equal => "as many rows as joints".to_string(),
         std::cmp::Ordering::Less => format!("{} to spare", input::counted(n - m, "joint")),
         std::cmp::Ordering::Greater => format!("{m} rows for {}: not all can be followed", input::counted(n, "joint")),
     };
-    row("task", format!("{} ({against})", rows.join(", ")));
+    let of =
+        if n < manipulator.dof() { format!("; {} move the end effector", input::counted(n, "joint")) } else { String::new() };
+    row("task", format!("{} ({against}{of})", rows.join(", ")));
     row(
         "inverse kinematics",
         match inverse_kinematics::of(manipulator) {

@@ -49,10 +49,17 @@ tool: {xyz: [0, 0.1, 0.2], rpy: [0.1, pi/6, -pi/4]}
 payload: {mass: 0.7, com: [0.05, 0, 0.1], inertia: {xx: 0.01, yy: 0.02, zz: 0.02, xy: 0.001}}
 ";
 
+/// The arm with more keys of the joints c and d.
+fn branching(text: &str, (c, d): (&str, &str)) -> String {
+    let joint = |name: &str| format!("{{name: {name}, ");
+    text.replace(&joint("c"), &(joint("c") + c + ", ")).replace(&joint("d"), &(joint("d") + d + ", "))
+}
+
 fn arms() -> Vec<Manipulator> {
     let modified = STANDARD.replace("standard", "modified");
     let sideways = STANDARD.replace("prismatic", "revolute").replace("{name: c, type: revolute", "{name: c, type: prismatic");
-    [STANDARD.to_string(), modified, sideways]
+    let tree = branching(STANDARD, ("parent: a, mount: {xyz: [0.1, 0, 0.2], rpy: [0.2, 0, pi/3]}", "parent: b"));
+    [STANDARD.to_string(), modified, sideways, tree]
         .into_iter()
         .map(|text| {
             let source = Source::new("everything.yaml", text);
@@ -208,8 +215,8 @@ fn coriolis_is_christoffels() {
     });
 }
 
-/// Arms whose constants are all reduced, so that every pass has its forks: revolute joints alone with three parallel axes in a row, and
-/// two with a sliding joint inside and at the end of such a row.
+/// Arms whose constants are all reduced, so that every pass has its forks: revolute joints alone with three parallel axes in a row, the same
+/// where these are not neighbours in the list, and two with a sliding joint inside and at the end of such a row.
 fn reduced_arms() -> Vec<Manipulator> {
     let reduced = STANDARD.replace("theta: 0.7", "theta: pi/6").replace("rpy: [0.1,", "rpy: [pi/2,");
     let revolute = reduced.replace("prismatic", "revolute").replace("convention: standard", "convention: modified");
@@ -219,7 +226,9 @@ fn reduced_arms() -> Vec<Manipulator> {
         .replace("alpha: pi/3", "alpha: 0")
         .replace("alpha: 0.3", "alpha: 0");
     let tilted = reduced.replace("alpha: 0.3", "alpha: pi/3");
-    [parallel, sliding, tilted]
+    let apart = parallel.replace("{name: b, ", "{name: b, parent: base, mount: {xyz: [0, 0.2, 0.1]}, ");
+    let apart = branching(&apart, ("parent: a", "parent: c"));
+    [parallel, apart, sliding, tilted]
         .into_iter()
         .map(|text| crate::validate::read(&Source::new("reduced.yaml", text)).0.expect("valid").0)
         .collect()

@@ -52,6 +52,7 @@ impl Reader<'_> {
             parameters: fields.get("parameters").map_or_else(Vec::new, |(key, node)| self.parameters(node, key)),
             joints: fields.get("joints").and_then(|(key, node)| self.joints(node, key, rows)),
             base: fields.get("base").and_then(|(key, node)| self.pose(node, key, "base")),
+            tip: fields.get("tip").and_then(|(key, node)| self.word(node, key, "tip")),
             tool: fields.get("tool").and_then(|(key, node)| self.pose(node, key, "tool")),
             payload: fields.get("payload").and_then(|(key, node)| self.body(node, key, "`payload`", PAYLOAD)),
             task: fields.get("task").and_then(|(key, node)| self.task(node, key)),

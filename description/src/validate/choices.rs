@@ -36,6 +36,24 @@ pub(super) fn task(description: &RobotDescription, diagnostics: &mut Diagnostics
     rows
 }
 
+/// The joint whose link carries the end effector, the last one where the file names none.
+pub(super) fn tip(description: &RobotDescription, diagnostics: &mut Diagnostics) -> Option<LinkId> {
+    let joints = &description.joints.as_ref()?.value;
+    let link = |place: usize| u32::try_from(place).ok().map(LinkId);
+    let Some(tip) = &description.tip else { return link(joints.len().checked_sub(1)?) };
+    let names: Vec<&str> = joints.iter().filter_map(|joint| joint.name.as_ref()).map(|name| name.value.as_str()).collect();
+    let place = joints.iter().position(|joint| joint.name.as_ref().is_some_and(|name| name.value == tip.value));
+    if place.is_none() {
+        let message = format!("`tip` names `{}`, which is no joint", excerpt(&tip.value));
+        let help = match did_you_mean(&tip.value, &names) {
+            Some(meant) => format!("did you mean `{meant}`?"),
+            None => "name the joint whose link carries the end effector, or leave the key out for the last one".into(),
+        };
+        diagnostics.push(Diagnostic::new(Code::UnknownTipJoint, tip.span, message, "unknown joint", help));
+    }
+    link(place?)
+}
+
 /// The word for the swivel angle.
 const SWIVEL: &str = "swivel";
 

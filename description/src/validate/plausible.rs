@@ -40,6 +40,7 @@ use crate::description::{BodyDescription, JointDescription, PoseDescription, Rob
 use crate::diagnostic::Code;
 use crate::document::Expression;
 use crate::kinds::JointKind;
+use crate::manipulator::LinkId;
 use crate::source::Span;
 pub use densities::{density_of_cuboid, doubt_of_density};
 use drives::{check_effort, check_friction, check_velocity};
@@ -98,7 +99,7 @@ struct Body<'b> {
 }
 
 /// Warns of what is implausible in a description without errors.
-pub(super) fn check(description: &RobotDescription, parents: &[Option<usize>], context: &mut Context<'_>) {
+pub(super) fn check(description: &RobotDescription, parents: &[Option<usize>], tip: LinkId, context: &mut Context<'_>) {
     let Some(joints) = description.joints.as_ref().map(|list| list.value.as_slice()) else { return };
     gravity(description, context);
     let mut lengths = Vec::new();
@@ -120,14 +121,12 @@ pub(super) fn check(description: &RobotDescription, parents: &[Option<usize>], c
     }
     check_outlying_length(joints, context);
     let tool = description.tool.as_ref().map(|tool| (translation(tool, "the tool", context), tool.key));
-    // How far each joint is from the base at most; the tool is on the last one.
+    // How far each joint is from the base at most, the tip with its tool.
     let mut far: Vec<f64> = Vec::new();
     for (length, parent) in lengths.iter().zip(parents) {
         far.push(parent.map_or(0.0, |parent| far[parent]) + length);
     }
-    if let (Some(last), Some((length, _))) = (far.last_mut(), tool) {
-        *last += length;
-    }
+    far[tip.0 as usize] += tool.map_or(0.0, |(length, _)| length);
     let mut reach = far.into_iter().fold(0.0, f64::max);
     check_reach(joints, &lengths, tool, reach, context);
     let strokes: Vec<f64> = joints.iter().map(|joint| stroke(joint, context)).collect();

@@ -28,6 +28,7 @@ pub struct Description {
     parameters: BTreeMap<String, Text>,
     joints: Vec<JointText>,
     base: Option<PoseText>,
+    tip: Option<String>,
     tool: Option<PoseText>,
     payload: Option<BodyText>,
     /// Rows of the task, as listed; empty by default.
@@ -434,6 +435,10 @@ impl Description {
         Ok(Model {
             modified,
             gravity: numbers.three(&Some(self.gravity.clone()))?.unwrap_or_default(),
+            tip: match &self.tip {
+                None => self.joints.len(),
+                Some(tip) => 1 + self.joints.iter().position(|joint| joint.name == *tip).ok_or("no such joint")?,
+            },
             joints,
             tool: numbers.pose(&self.tool)?,
             payload: self.payload.as_ref().map(|body| numbers.lumped(body)).transpose()?,

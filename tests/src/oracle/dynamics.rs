@@ -59,7 +59,7 @@ impl Model {
             }
         }
         if let Some(payload) = self.payload {
-            bodies.push((self.dof(), posture.end, payload));
+            bodies.push((self.tip, posture.end, payload));
         }
         bodies
     }

@@ -52,7 +52,7 @@ impl<S: Scalar> Posture<S> {
             });
             frames.push(frame);
         }
-        let end = frames.last().expect("the base is there").then(&placed(model.tool));
+        let end = frames[model.tip].then(&placed(model.tool));
         Posture { frames, end, axes }
     }
 
@@ -60,7 +60,7 @@ impl<S: Scalar> Posture<S> {
     fn jacobian(&self, model: &Model) -> [Vec<S>; 6] {
         let mut rows: [Vec<S>; 6] = Default::default();
         for (i, (joint, &(z, o))) in model.joints.iter().zip(&self.axes).enumerate() {
-            if !model.carries(i + 1, model.dof()) {
+            if !model.carries(i + 1, model.tip) {
                 rows.iter_mut().for_each(|row| row.push(S::from(0.0)));
                 continue;
             }
