@@ -3,6 +3,7 @@
 use std::path::Path;
 
 use armgen_codegen::emit::Language;
+use armgen_texts::module::file_of;
 
 /// Words of Python, which `import` takes for no name.
 const PYTHON: [&str; 35] = [
@@ -79,14 +80,6 @@ const MATLAB: [&str; 41] = [
 const INCLUDED: [&str; 6] = ["float", "math", "stdbool", "stddef", "stdint", "string"];
 /// MATLAB reads so many characters of a name.
 const LONGEST: usize = 63;
-
-/// The name of a file of a language, or of a folder.
-pub(crate) fn file_of(language: Language, stem: &str) -> String {
-    match language {
-        Language::Matlab => format!("+{stem}"),
-        language => format!("{stem}.{}", language.extensions()[0]),
-    }
-}
 
 /// Why no module of a language can be called so, and what to write instead.
 pub(crate) fn unfit(language: Language, out: &Path) -> Option<String> {

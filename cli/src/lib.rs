@@ -10,7 +10,7 @@
 //! input.rs       descriptions from files
 //! ```
 //!
-//! The package of Python holds them, too: [`run_with`] is its program; what it hands out as texts are the other functions here.
+//! The package of Python holds them, too: [`run_with`] is its program, [`generated`] the files that it hands out.
 
 mod commands;
 mod companions;
@@ -36,9 +36,6 @@ use clap::{Parser, Subcommand, ValueEnum, ValueHint};
 use commands::generate::{Beside, Choices};
 use commands::package::Manifest;
 use commands::{convert, export, import};
-
-pub use commands::check::summary;
-pub use commands::show::{items, steps_of_inverse_kinematics, usual_form};
 
 const STYLES: Styles = Styles::styled()
     .header(AnsiColor::Green.on_default().bold())

@@ -31,7 +31,12 @@ pub(crate) struct Parts<'p> {
     /// The input of the script.
     pub(crate) data: &'p Value,
     pub(crate) script: &'p str,
+    /// Marks script and style for the policy of a window around the page.
+    pub(crate) nonce: Option<&'p str>,
 }
+
+/// In place of a section that comes later.
+pub(crate) const LATER: &str = "<p class=\"small\" data-later role=\"status\">Being derived …</p>\n";
 
 /// The whole page.
 pub(crate) fn document(parts: &Parts<'_>) -> String {
@@ -40,13 +45,14 @@ pub(crate) fn document(parts: &Parts<'_>) -> String {
     let own: String = lines.flat_map(|line| [line, if line.ends_with([',', ';', '{', '}']) { "" } else { "\n" }]).collect();
     let style = if parts.logs.is_some() { format!("{PLOTS}\n{own}") } else { own };
     let name = escape(&parts.model.manipulator.name);
+    let nonce = parts.nonce.map_or_else(String::new, |nonce| format!(" nonce=\"{}\"", escape(nonce)));
     let mut text = String::from("<!doctype html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n");
     let _ = write!(
         text,
         "<meta http-equiv=\"Content-Security-Policy\" content=\"default-src 'none'; script-src '{}'; style-src '{}'; img-src data:\">\n\
          <meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n\
          <meta name=\"generator\" content=\"armgen {}\">\n\
-         <link rel=\"icon\" href=\"data:,\">\n<title>{name}</title>\n<style>{style}</style>\n</head>\n<body>\n",
+         <link rel=\"icon\" href=\"data:,\">\n<title>{name}</title>\n<style{nonce}>{style}</style>\n</head>\n<body>\n",
         hash(parts.script),
         hash(&style),
         env!("CARGO_PKG_VERSION"),
@@ -75,7 +81,7 @@ pub(crate) fn document(parts: &Parts<'_>) -> String {
     text += "</div>\n</main>\n<noscript><p class=\"warning\">Without scripts this page shows its tables only: no picture, no numbers.</p></noscript>\n";
     let _ = write!(
         text,
-        "<script type=\"application/json\" id=\"data\">{}</script>\n<script type=\"module\">{}</script>\n</body>\n</html>\n",
+        "<script type=\"application/json\" id=\"data\">{}</script>\n<script type=\"module\"{nonce}>{}</script>\n</body>\n</html>\n",
         json(parts.data),
         parts.script
     );

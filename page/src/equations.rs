@@ -29,11 +29,34 @@ const PACKET: usize = 131_072;
 pub(crate) struct Equations {
     quantities: Vec<Quantity>,
     absent: Vec<Absent>,
+    pub(crate) determinant: Determinant,
+}
+
+/// Where the Jacobian is singular, for the script.
+pub(crate) struct Determinant {
     /// The factors of the determinant, or the common factors of all minors, with the description's numbers; and their zeros.
     pub(crate) factors: Value,
     /// The same for the first six joints of an arm with more joints than the six rows of its task; otherwise null.
     pub(crate) first_six: Value,
 }
+
+impl Determinant {
+    pub(crate) fn new(model: &Model) -> Determinant {
+        Determinant::of(model, &Sheet::in_style(model, &[Item::Determinant], Reading::Nominal, CLOSED))
+    }
+
+    /// Of a sheet with the determinant.
+    fn of(model: &Model, sheet: &Sheet) -> Determinant {
+        let factors = sheet.quantities.iter().find(|shown| shown.factors.is_some());
+        Determinant {
+            factors: factors.map_or(Value::Null, factors_of),
+            first_six: first_six(model).as_ref().map_or(Value::Null, factors_of),
+        }
+    }
+}
+
+/// Prefer closed forms, because a page can fold them.
+const CLOSED: Style = Style { form: Form::Closed, digits: None };
 
 struct Quantity {
     name: String,
@@ -46,21 +69,13 @@ struct Quantity {
 
 impl Equations {
     pub(crate) fn new(model: &Model) -> Equations {
-        // Prefer closed forms, because a page can fold them.
-        let closed = Style { form: Form::Closed, digits: None };
-        let [nominal, symbolic] = Sheet::in_both_readings(model, &Item::all(), closed);
+        let [nominal, symbolic] = Sheet::in_both_readings(model, &Item::all(), CLOSED);
         let mut quantities = parallel_map(&nominal.quantities, |shown| {
             let other = symbolic.quantities.iter().find(|other| other.name == shown.name);
             quantity(&nominal.robot, shown, other)
         });
         leave_out(&mut quantities);
-        let factors = nominal.quantities.iter().find(|shown| shown.factors.is_some());
-        Equations {
-            quantities,
-            factors: factors.map_or(Value::Null, factors_of),
-            first_six: first_six(model).as_ref().map_or(Value::Null, factors_of),
-            absent: nominal.absent,
-        }
+        Equations { quantities, determinant: Determinant::of(model, &nominal), absent: nominal.absent }
     }
 
     /// The input of the script: the packets, and the packet's index for the name of each quantity.
@@ -126,8 +141,7 @@ fn first_six(model: &Model) -> Option<Shown> {
     shorter.tip = sixth;
     shorter.joints.truncate(6);
     shorter.tool = Pose::identity();
-    let closed = Style { form: Form::Closed, digits: None };
-    let mut sheet = Sheet::in_style(&Model::new(shorter), &[Item::Determinant], Reading::Nominal, closed);
+    let mut sheet = Sheet::in_style(&Model::new(shorter), &[Item::Determinant], Reading::Nominal, CLOSED);
     sheet.quantities.pop()
 }
 

@@ -30,9 +30,11 @@ use armgen_codegen::diagnostic::Diagnostics;
 use armgen_codegen::emit::{javascript, Notes, Origin};
 use armgen_codegen::manipulator::Manipulator;
 use armgen_codegen::program::{Module, Trig};
-use armgen_codegen::schedule::Options;
+use armgen_codegen::schedule::{Options, Selection};
 use armgen_codegen::source::Source;
+use armgen_codegen::validate::Places;
 use armgen_codegen::{programs, validate, Model, Scalar};
+use equations::Determinant;
 use serde_json::{json, Value};
 
 /// The functions that a page uses, if the arm has them.
@@ -79,37 +81,89 @@ pub fn page(source: &Source, runs: &[Run]) -> Result<(Option<String>, Diagnostic
         let fits = run.log.as_ref().map_or(Ok(()), |log| log.fits(&joints));
         fits.map_err(|reason| Misfit { run: run.name.clone(), reason })?;
     }
-    let (description, _) = RobotDescription::parse(source);
-    let description = description.unwrap_or_default();
     let model = Model::new(manipulator);
-    let mut module = match programs(&model, &places, &Options { trig: Trig::Fast, ..Options::default() }) {
-        Ok(module) => module,
-        Err(fault) => {
-            diagnostics.push(*fault);
-            return Ok((None, diagnostics));
-        }
+    let module = match derived(&model, &places, Selection::ALL, &mut diagnostics) {
+        Some(module) => module,
+        None => return Ok((None, diagnostics)),
     };
     let cost = cost::table(&module);
     let equations = equations::Equations::new(&model);
-    let left_out = keep_what_is_used(&mut module);
-    let text = javascript::print(&module, &Origin::of(source), &Notes::default());
-    let rows = rows::rows(source, &description, &model.manipulator);
-    let bodies = bodies::bodies(&model.manipulator, &description, &diagnostics);
-    let data = data(&model.manipulator, &description, &rows, bodies, &module, &left_out, &equations, runs);
-    let script = script::script(&text, !runs.is_empty());
-    let page = document::document(&document::Parts {
-        model: &model,
-        drives: &drives::tables(source, &description, &model.manipulator),
-        description: &description,
-        rows: &rows,
-        warnings: warnings::Warnings::new(source, &description, &diagnostics),
-        equations: &equations.section(),
-        cost: &cost,
-        logs: (!runs.is_empty()).then(|| (logs::title(runs), logs::section(runs))),
-        data: &data,
-        script: &script,
-    });
+    let whole = Whole { cost: &cost, equations: &equations.section(), data: Some(equations.data()), nonce: None };
+    let page = whole.page(source, &model, module, &equations.determinant, runs, &diagnostics);
     Ok((Some(page), diagnostics))
+}
+
+/// The page in the first of two steps: everything but the equations and the table of costs, which take most of the time.
+/// Its script waits for a message from the window around it, the [`Rest`] as JSON. `nonce` marks its script and its style for the
+/// policy of that window.
+pub fn picture(source: &Source, nonce: &str) -> (Option<String>, Diagnostics) {
+    let (valid, mut diagnostics) = validate::read_for(source, Scalar::F64);
+    let Some((manipulator, places)) = valid else { return (None, diagnostics) };
+    let model = Model::new(manipulator);
+    let functions = Selection::named(FUNCTIONS).expect("names of the catalogue");
+    let Some(module) = derived(&model, &places, functions, &mut diagnostics) else { return (None, diagnostics) };
+    let whole = Whole { cost: document::LATER, equations: document::LATER, data: None, nonce: Some(nonce) };
+    let page = whole.page(source, &model, module, &Determinant::new(&model), &[], &diagnostics);
+    (Some(page), diagnostics)
+}
+
+/// The second step: the content of the sections of equations and costs, and the equations for the script. `None` if the description
+/// is faulty.
+pub fn rest(source: &Source) -> Option<Value> {
+    let (manipulator, places) = validate::read_for(source, Scalar::F64).0?;
+    let model = Model::new(manipulator);
+    let module = derived(&model, &places, Selection::ALL, &mut Diagnostics::new())?;
+    let equations = equations::Equations::new(&model);
+    Some(json!({ "equations": equations.section(), "cost": cost::table(&module), "data": equations.data() }))
+}
+
+/// The programs of functions; `None` after a fault.
+fn derived(model: &Model, places: &Places, functions: Selection, diagnostics: &mut Diagnostics) -> Option<Module> {
+    let options = Options { trig: Trig::Fast, functions, ..Options::default() };
+    programs(model, places, &options).map_err(|fault| diagnostics.push(*fault)).ok()
+}
+
+/// What only the second step has.
+struct Whole<'w> {
+    cost: &'w str,
+    equations: &'w str,
+    data: Option<Value>,
+    nonce: Option<&'w str>,
+}
+
+impl Whole<'_> {
+    fn page(
+        self,
+        source: &Source,
+        model: &Model,
+        mut module: Module,
+        determinant: &Determinant,
+        runs: &[Run],
+        diagnostics: &Diagnostics,
+    ) -> String {
+        let (description, _) = RobotDescription::parse(source);
+        let description = description.unwrap_or_default();
+        let left_out = keep_what_is_used(&mut module);
+        let text = javascript::print(&module, &Origin::of(source), &Notes::default());
+        let rows = rows::rows(source, &description, &model.manipulator);
+        let bodies = bodies::bodies(&model.manipulator, &description, diagnostics);
+        let mut data = data(&model.manipulator, &description, &rows, bodies, &module, &left_out, determinant, runs);
+        data["equations"] = self.data.unwrap_or_default();
+        let script = script::script(&text, !runs.is_empty());
+        document::document(&document::Parts {
+            model,
+            drives: &drives::tables(source, &description, &model.manipulator),
+            description: &description,
+            rows: &rows,
+            warnings: warnings::Warnings::new(source, &description, diagnostics),
+            equations: self.equations,
+            cost: self.cost,
+            logs: (!runs.is_empty()).then(|| (logs::title(runs), logs::section(runs))),
+            data: &data,
+            script: &script,
+            nonce: self.nonce,
+        })
+    }
 }
 
 /// Keeps only the functions that a page uses; returns the names and operations of those that are too long.
@@ -139,7 +193,7 @@ fn data(
     bodies: Value,
     module: &Module,
     left_out: &[(String, usize)],
-    equations: &equations::Equations,
+    determinant: &Determinant,
     runs: &[Run],
 ) -> Value {
     let row = |row: &rows::Row| {
@@ -175,9 +229,8 @@ fn data(
         "task": module.task,
         "functions": module.functions.iter().map(|function| function.name()).collect::<Vec<_>>(),
         "leftOut": left_out,
-        "equations": equations.data(),
-        "determinant": equations.factors,
-        "firstSix": equations.first_six,
+        "determinant": determinant.factors,
+        "firstSix": determinant.first_six,
         "runs": logs::data(runs, rows),
     })
 }

@@ -73,3 +73,33 @@ fn nobody_is_sent_from_the_page_to_the_page() {
     assert!(document.contains("<a href=\"#singular\">w = √det(J Jᵀ) among the numbers</a>"));
     assert!(!document.contains('`') && !document.contains("armgen page"));
 }
+
+/// Both steps together are the page: its module, its sections and its equations.
+#[test]
+fn the_second_step_brings_what_the_first_lacks() {
+    for name in ["scara", "ur5"] {
+        let path = format!("{}/../robots/{name}.yaml", env!("CARGO_MANIFEST_DIR"));
+        let source = Source::new("arm.yaml", std::fs::read_to_string(path).expect("a description"));
+        let whole = page("arm.yaml", source.text());
+        let (first, _) = armgen_page::picture(&source, "abc");
+        let first = first.expect("a valid description");
+        let rest = armgen_page::rest(&source).expect("a valid description");
+        let script = |page: &str| page.split_once(">globalThis.robot").map(|(_, script)| script.to_owned());
+        assert!(script(&whole).is_some(), "{name}");
+        assert_eq!(script(&whole), script(&first), "{name}");
+        let data = |page: &str| -> serde_json::Value {
+            let text = page.split_once("id=\"data\">").and_then(|(_, rest)| rest.split_once("</script>")).expect("data").0;
+            serde_json::from_str(text).expect("JSON")
+        };
+        let mut both = data(&first);
+        assert!(both["equations"].is_null(), "{name}");
+        both["equations"] = rest["data"].clone();
+        assert_eq!(both, data(&whole), "{name}");
+        for section in ["equations", "cost"] {
+            let content = rest[section].as_str().expect("a text");
+            assert!(whole.contains(content) && !first.contains(content), "{name}: {section}");
+        }
+        assert_eq!(first.matches("data-later role").count(), 2, "{name}");
+        assert_eq!(first.matches(" nonce=\"abc\"").count(), 2, "{name}");
+    }
+}

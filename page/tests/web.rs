@@ -8,8 +8,10 @@ use std::process::Command;
 #[test]
 #[ignore = "wide"]
 fn the_files_of_the_script_pass_their_own_tests() {
-    let folder = concat!(env!("CARGO_MANIFEST_DIR"), "/web/tests");
-    let mut files: Vec<_> = std::fs::read_dir(folder).expect("the tests").map(|entry| entry.expect("an entry").path()).collect();
+    // The playground around the page is of the same kind.
+    let folders = ["/web/tests", "/../wasm/web/tests"].map(|folder| format!("{}{folder}", env!("CARGO_MANIFEST_DIR")));
+    let entries = folders.iter().flat_map(|folder| std::fs::read_dir(folder).expect("the tests"));
+    let mut files: Vec<_> = entries.map(|entry| entry.expect("an entry").path()).collect();
     files.sort();
     if !installed::there("node", "nodejs") {
         return;
@@ -29,8 +31,10 @@ fn the_types_that_the_files_of_the_script_say_are_theirs() {
         installed::left_out("no `tsc` of TypeScript 5 or later here (npm: typescript)");
         return;
     }
-    let options = "--strict false --allowJs --checkJs --noEmit --strictNullChecks --skipLibCheck --target es2022 --module es2022 --lib dom,dom.iterable,es2022";
-    let output = Command::new("tsc").current_dir(folder).args(options.split(' ')).args(["globals.d.ts", "main.mjs"]).output();
-    let output = output.expect("tsc runs");
-    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stdout));
+    let options = "--strict false --allowJs --checkJs --noEmit --strictNullChecks --skipLibCheck --target es2023 --module es2022 --lib dom,dom.iterable,es2023";
+    let playground = concat!(env!("CARGO_MANIFEST_DIR"), "/../wasm/web");
+    for (folder, files) in [(folder, ["globals.d.ts", "main.mjs"]), (playground, ["playground.mjs", "worker.mjs"])] {
+        let output = Command::new("tsc").current_dir(folder).args(options.split(' ')).args(files).output().expect("tsc runs");
+        assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stdout));
+    }
 }

@@ -7,7 +7,7 @@ import { equations } from "./equations.mjs";
 import { freeFall } from "./free_fall.mjs";
 import { logs } from "./logs.mjs";
 import { lostMotion } from "./lost_motion.mjs";
-import { numbers } from "./numbers.mjs";
+import { linkEquations, numbers } from "./numbers.mjs";
 import { Picture } from "./picture.mjs";
 import { postures } from "./postures.mjs";
 import { settings } from "./settings.mjs";
@@ -24,12 +24,37 @@ player(data, state);
 const picture = new Picture(data, state);
 freeFall(data, state, picture);
 sheet(data, state, picture);
-equations(data, state, numbers(data, state, picture.arm));
+const shown = numbers(data, state, picture.arm);
 lostMotion(data, state, picture);
-cost();
+if (data.equations) rest();
 check(data, state, picture);
 workspace(data, state, picture);
 postures(data, state, picture);
 logs(data, state, picture);
 state.move(home(data));
 document.documentElement.dataset.ready = String(Math.round(performance.now()));
+if (!data.equations) {
+    addEventListener("message", later);
+    parent.postMessage({ drawn: true }, "*");
+}
+
+/** What only the second of two steps has. */
+function rest() {
+    linkEquations();
+    equations(data, state, shown);
+    cost();
+}
+
+/** The second step, from the window around the page. @param {MessageEvent} event */
+function later({ source, data: parts }) {
+    if (source !== parent || !parts.rest) return;
+    removeEventListener("message", later);
+    for (const name of ["equations", "cost"]) {
+        const place = byId(name).querySelector("[data-later]");
+        if (place) place.outerHTML = parts.rest[name];
+    }
+    data.equations = parts.rest.data;
+    rest();
+    state.changed("motion");
+    document.documentElement.dataset.whole = String(Math.round(performance.now()));
+}

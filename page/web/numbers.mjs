@@ -223,7 +223,7 @@ function table(quantity) {
     const element = html(whole, { id: `number-${name}`, open: rows > 0 || undefined, class: "quantity", "data-of": name }, head);
     if (rows === 0) {
         // The number before the words: after them its unit would look like a symbol that it is the value of.
-        head.append(" = ", cell(0, 0), unit ? ` ${unit}` : "", said, html("span", { class: "small" }, `  ${title}`, ...(quantity.more ?? [" "])), ...(quantity.buttons ?? []), ...equationLink(name.startsWith("factor_") ? "determinant" : name));
+        head.append(" = ", cell(0, 0), unit ? ` ${unit}` : "", said, html("span", { class: "small" }, `  ${title}`, ...(quantity.more ?? [" "])), ...(quantity.buttons ?? []));
     } else {
         head.append(` ${title}${unit ? `, ${unit}` : ""}`);
         const rowName = (i) => `${i} ${quantity.rowNames?.[i - 1] ?? ""}`;
@@ -312,7 +312,15 @@ function copyButtons(quantity) {
         button.addEventListener("click", () => copy(button, tableText(quantity.of(), form), `${quantity.symbol} as ${form}`));
         return button;
     });
-    return html("div", { class: "controls copies" }, "copy all digits as ", ...buttons, ...equationLink(quantity.name));
+    return html("div", { class: "controls copies" }, "copy all digits as ", ...buttons);
+}
+
+/** Ways from the numbers to their equations, where the page has these. */
+export function linkEquations() {
+    for (const element of document.querySelectorAll(".quantity[data-of]")) {
+        const name = element.getAttribute("data-of") ?? "";
+        element.querySelector(":scope > .copies, :scope > p")?.append(...equationLink(name.startsWith("factor_") ? "determinant" : name));
+    }
 }
 
 /** The way to the equation of a quantity, where the page has it. @param {string} name */

@@ -192,7 +192,7 @@ impl Arm {
 
     /// The summary of `armgen check`.
     fn check(&self, py: Python<'_>, allow: Vec<String>, full: bool) -> PyResult<Option<String>> {
-        guarded(py, || Ok(py.detach(|| armgen_commands::summary(&self.robot.source, &allow, full))))
+        guarded(py, || Ok(py.detach(|| armgen_texts::summary::of(&self.robot.source, &allow, full))))
     }
 
     /// The files of `armgen generate` with these options, by their names.

@@ -3,6 +3,7 @@
 use armgen_codegen::show::{Form, Reading, Sheet, Style};
 use armgen_codegen::source::Source;
 use armgen_codegen::Model;
+use armgen_texts::shown;
 
 /// A quantity as `armgen show` writes it.
 ///
@@ -17,7 +18,7 @@ pub(crate) fn shown(
     format: &str,
 ) -> Result<String, String> {
     let form = match form {
-        None => armgen_commands::usual_form(model),
+        None => shown::usual_form(model),
         Some("shortest") => Form::Shortest,
         Some("closed") => Form::Closed,
         Some("steps") => Form::Steps,
@@ -27,9 +28,9 @@ pub(crate) fn shown(
         return Err("digits: 1 to 17".to_owned());
     }
     if quantity == "inverse_kinematics" && format == "text" {
-        return Ok(armgen_commands::steps_of_inverse_kinematics(model));
+        return Ok(shown::steps_of_inverse_kinematics(model));
     }
-    let items = armgen_commands::items(model, &[quantity.to_owned()])?;
+    let items = shown::items(model, &[quantity.to_owned()])?;
     let reading = if symbolic { Reading::Symbolic } else { Reading::Nominal };
     let sheet = Sheet::in_style(model, &items, reading, Style { form, digits });
     if let (true, Some(absent)) = (sheet.quantities.is_empty(), sheet.absent.first()) {

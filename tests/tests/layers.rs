@@ -166,6 +166,9 @@ const IDENTIFY: Layers = &[
 const COMMANDS: Layers =
     &[("input", &[]), ("companions", &[]), ("file_names", &[]), ("commands", &["companions", "file_names", "input"])];
 
+/// What the program writes about an arm.
+const TEXTS: Layers = &[("json", &[]), ("module", &[]), ("rows", &[]), ("shown", &[]), ("summary", &["rows"])];
+
 /// From a text and a description to a verdict; `docs/certificate.md` explains each step.
 const VERIFY: Layers = &[
     ("check", &[]),
@@ -603,7 +606,7 @@ fn read(name: &str) -> Crate {
     Crate::read(&root.join(name).join("src"))
 }
 
-const CRATES: [(&str, Layers); 11] = [
+const CRATES: [(&str, Layers); 12] = [
     ("algebra", ALGEBRA),
     ("description", DESCRIPTION),
     ("codegen", CODEGEN),
@@ -613,6 +616,7 @@ const CRATES: [(&str, Layers); 11] = [
     ("import", IMPORT),
     ("page", PAGE),
     ("cli", COMMANDS),
+    ("texts", TEXTS),
     ("verify", VERIFY),
     ("numbers", NUMBERS),
 ];

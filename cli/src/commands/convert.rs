@@ -3,9 +3,6 @@
 use std::path::{Path, PathBuf};
 
 use armgen_codegen::description::Convention;
-use armgen_codegen::inverse_kinematics::{self, InverseKinematics};
-use armgen_codegen::source::Source;
-use armgen_codegen::validate;
 
 use crate::output::write_other;
 use crate::{input, terminal};
@@ -29,14 +26,6 @@ impl From<To> for Convention {
             To::Urdf => Convention::Urdf,
         }
     }
-}
-
-/// How the rows of a description are solved for its joints, where the description itself gives no construction: the rows may be rounded.
-pub(crate) fn of_rows(source: &Source) -> Option<InverseKinematics> {
-    let (converted, _) = armgen_import::convert(source, Convention::Standard);
-    let rows = Source::new("rows.yaml", converted?.yaml);
-    let (manipulator, _) = validate::read(&rows).0?;
-    inverse_kinematics::of(&manipulator).ok()
 }
 
 pub(crate) fn run(file: &Path, to: To, out: Option<&PathBuf>) -> u8 {

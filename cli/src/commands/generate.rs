@@ -14,10 +14,11 @@ use armgen_codegen::schedule::{Options, Selection};
 use armgen_codegen::source::Source;
 use armgen_codegen::validate;
 use armgen_codegen::Generated;
+use armgen_texts::module::{self, Output};
+use armgen_texts::rows;
 use armgen_verify::certificate::Certificate;
 use armgen_verify::reader::ModuleText;
 
-use super::convert;
 use super::package::{Manifest, Package};
 use super::verify::{certificate_beside, with_spinner};
 use crate::output::{place, same_file, write};
@@ -154,7 +155,7 @@ pub(crate) fn run(file: &Path, out: Option<&Path>, choices: &Choices, beside: &B
     if let (None, [first, ..]) = (out, beside.flags().as_slice()) {
         terminal::error(&format!(
             "{first} writes beside the module: say where that goes, with `--out {}`",
-            file_names::file_of(language, "robot")
+            module::file_of(language, "robot")
         ));
         return UNREADABLE;
     }
@@ -177,7 +178,7 @@ pub(crate) fn run(file: &Path, out: Option<&Path>, choices: &Choices, beside: &B
             ));
             return FAULTY;
         }
-        let remedy = match convert::of_rows(&source) {
+        let remedy = match rows::solved(&source) {
             Some(_) => format!("; the rows that `armgen convert {} --convention standard` writes have one", source.name()),
             None => String::new(),
         };
@@ -373,9 +374,6 @@ fn unfit(
     }
 }
 
-/// A file to write.
-type Output = (PathBuf, String);
-
 /// A module and its requested companions.
 struct Requested<'a> {
     source: &'a Source,
@@ -390,14 +388,7 @@ struct Requested<'a> {
 /// All files to write, the module first; or why none is written.
 fn files(requested: &Requested) -> Result<Vec<Output>, String> {
     let Requested { generated, language, out, beside, .. } = requested;
-    let mut files = match language {
-        Language::Matlab => generated.package().into_iter().map(|file| (out.join(file.name), file.text)).collect(),
-        language => vec![(out.to_path_buf(), generated.in_language(*language))],
-    };
-    if *language == Language::JavaScript {
-        let extension = if out.extension().is_some_and(|extension| extension == "js") { "d.ts" } else { "d.mts" };
-        files.push((out.with_extension(extension), generated.declarations()));
-    }
+    let mut files = module::files(generated, *language, out);
     if beside.verify {
         files.push(requested.certificate()?);
     }
@@ -427,12 +418,12 @@ fn files(requested: &Requested) -> Result<Vec<Output>, String> {
 impl Requested<'_> {
     /// The name of the module's file without its extension.
     fn stem(&self) -> String {
-        self.out.file_stem().unwrap_or_default().to_string_lossy().into_owned()
+        module::stem(self.out)
     }
 
     /// A companion file, named after the module.
     fn file(&self, ending: &str, text: String) -> Output {
-        (self.out.with_file_name(self.stem() + ending), text)
+        (module::beside(self.out, ending), text)
     }
 
     /// The certificate of the module, without which nothing is written.
@@ -491,10 +482,7 @@ impl Requested<'_> {
 
     /// The module of inverse kinematics, and its certificate on request.
     fn inverse_kinematics(&self) -> Result<Vec<Output>, String> {
-        let (file, text) = match self.language {
-            Language::C | Language::Cuda => self.file("_ik.h", self.generated.inverse_kinematics_in_c()?),
-            _ => self.file("_ik.rs", self.generated.inverse_kinematics()),
-        };
+        let (file, text) = module::inverse_kinematics(self.generated, self.language, self.out)?;
         let mut files = Vec::new();
         if self.beside.verify {
             let poses = armgen_verify::inverse_kinematics::POSES;

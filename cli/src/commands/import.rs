@@ -9,9 +9,10 @@ use armgen_codegen::inverse_kinematics::{self, Construction, InverseKinematics};
 use armgen_codegen::source::Source;
 use armgen_import::{Imported, Options};
 use armgen_terminal::input::LONGEST;
+use armgen_texts::rows;
 use clap::{Args, ValueHint};
 
-use super::convert::{self, To};
+use super::convert::To;
 use crate::output::{same_file, write};
 use crate::{input, terminal, DONE, FAULTY, UNREADABLE};
 
@@ -199,7 +200,7 @@ fn note_inverse_kinematics(source: &Source, options: &Options, description: &Sou
         terminal::note(&line);
     }
     let Err(reason) = found else { return };
-    match convert::of_rows(description) {
+    match rows::solved(description) {
         Some(found) => terminal::note(&format!(
             "inverse kinematics are those of its rows, of 17 digits: import it with `--convention standard`: {}",
             found.class

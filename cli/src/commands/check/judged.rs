@@ -3,11 +3,9 @@
 use std::path::Path;
 
 use armgen_codegen::diagnostic::Diagnostics;
-use armgen_codegen::kinds::Scalar;
 use armgen_codegen::manipulator::Manipulator;
-use armgen_codegen::schedule::Options;
 use armgen_codegen::source::Source;
-use armgen_codegen::{validate, Model};
+use serde_json::Value;
 
 use super::Doubts;
 use crate::{input, DONE, FAULTY};
@@ -24,22 +22,14 @@ impl Judged {
     /// Reads and checks a file; the exit code of one that cannot be read.
     pub(super) fn of(file: &Path, doubts: &Doubts) -> Result<Judged, u8> {
         let source = input::source(file)?;
-        let (valid, mut diagnostics) = validate::read_for(&source, Scalar::F64);
+        let (arm, mut diagnostics) = armgen_texts::judged(&source);
         diagnostics.allow(&doubts.allow);
-        let mut arm = None;
-        if let Some((manipulator, places)) = valid {
-            let model = Model::new(manipulator);
-            // Only the programs show whether products of valid numbers still fit the scalar.
-            match armgen_codegen::programs(&model, &places, &Options::default()) {
-                Ok(_) => arm = Some(model.manipulator),
-                Err(fault) => {
-                    let mut faults = Diagnostics::new();
-                    faults.push(*fault);
-                    diagnostics.extend(faults);
-                }
-            }
-        }
         let code = if diagnostics.has_errors() || doubts.strict && diagnostics.warnings() > 0 { FAULTY } else { DONE };
         Ok(Judged { source, arm, diagnostics, code })
+    }
+
+    /// As `armgen check --format json` has it.
+    pub(super) fn in_json(&self) -> Value {
+        armgen_texts::json::of_file(&self.source, self.arm.as_ref(), &self.diagnostics)
     }
 }

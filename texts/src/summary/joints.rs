@@ -10,8 +10,8 @@ use armgen_codegen::manipulator::{Joint, Manipulator};
 use armgen_codegen::source::Source;
 
 use super::{decimal, digits};
-use crate::table::Align::{Left, Right};
-use crate::table::Table;
+use armgen_terminal::table::Align::{Left, Right};
+use armgen_terminal::table::Table;
 
 /// One line per joint: the row as written; and the poses before the first and after the last row.
 pub(super) fn rows(source: &Source, description: &RobotDescription, manipulator: &Manipulator) -> String {

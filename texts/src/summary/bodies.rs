@@ -9,8 +9,8 @@ use armgen_codegen::validate::{density_of_cuboid, doubt_of_density};
 use nalgebra::{Matrix3, SymmetricEigen, Vector3};
 
 use super::{digits, legend};
-use crate::number;
-use crate::table::{Align, Table};
+use armgen_terminal::number;
+use armgen_terminal::table::{Align, Table};
 
 /// A body with mass, in the frame of what carries it.
 pub(super) struct Solid {

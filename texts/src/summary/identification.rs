@@ -13,8 +13,8 @@ use armgen_codegen::manipulator::Manipulator;
 use armgen_codegen::Model;
 
 use super::decimal;
-use crate::input::counted;
-use crate::table::{Align, Table};
+use armgen_terminal::input::counted;
+use armgen_terminal::table::{Align, Table};
 
 /// A line of this length or less.
 const WIDTH: usize = 100;

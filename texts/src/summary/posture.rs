@@ -14,7 +14,7 @@ use nalgebra::{Isometry3, Matrix3, Point3, Rotation3, Translation3, Unit, UnitQu
 
 use super::bodies::{short, Solid};
 use super::digits;
-use crate::table::{Align, Table};
+use armgen_terminal::table::{Align, Table};
 
 /// Smaller numbers are rounding, compared with 1.
 const ROUNDING: f64 = 1e-9;

@@ -3,30 +3,29 @@
 //! Keys keep their names and meaning within a version; new ones may be added.
 
 use armgen_codegen::derive::parameters::nominal;
-use armgen_codegen::diagnostic::Diagnostic;
+use armgen_codegen::diagnostic::{Diagnostic, Diagnostics};
 use armgen_codegen::exact::{Number, Polynomial};
 use armgen_codegen::kinds::JointKind;
 use armgen_codegen::manipulator::Manipulator;
 use armgen_codegen::source::{Source, Span};
 use serde_json::{json, Value};
 
-use super::judged::Judged;
-
 /// The version of the form.
 const VERSION: u32 = 1;
 
-pub(super) fn document(files: &[Judged]) -> Value {
-    json!({ "version": VERSION, "files": files.iter().map(of_file).collect::<Vec<_>>() })
+/// The document of files.
+pub fn document(files: impl IntoIterator<Item = Value>) -> Value {
+    json!({ "version": VERSION, "files": files.into_iter().collect::<Vec<_>>() })
 }
 
-fn of_file(file: &Judged) -> Value {
-    let Judged { source, arm, diagnostics, .. } = file;
+/// A file: the arm if it is valid, and the diagnostics.
+pub fn of_file(source: &Source, arm: Option<&Manipulator>, diagnostics: &Diagnostics) -> Value {
     json!({
         "file": source.name(),
         "valid": !diagnostics.has_errors(),
         "errors": diagnostics.errors(),
         "warnings": diagnostics.warnings(),
-        "summary": arm.as_ref().map(of_arm),
+        "summary": arm.map(of_arm),
         "diagnostics": diagnostics.iter().map(|diagnostic| of_diagnostic(diagnostic, source)).collect::<Vec<_>>(),
     })
 }

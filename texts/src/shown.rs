@@ -1,0 +1,57 @@
+//! Equations by name, as `armgen show` finds them.
+
+use armgen_codegen::show::{Form, Item};
+use armgen_codegen::suggest::function_meant;
+use armgen_codegen::{inverse_kinematics, Model};
+
+/// Arms of so many joints have closed forms that a person reads.
+const FEW_JOINTS: usize = 4;
+
+/// The form of an arm's equations unless another is asked for.
+pub fn usual_form(model: &Model) -> Form {
+    if model.manipulator.dof() <= FEW_JOINTS {
+        Form::Closed
+    } else {
+        Form::Shortest
+    }
+}
+
+/// Not a quantity but a procedure: its class and its steps.
+pub const INVERSE_KINEMATICS: &str = "inverse_kinematics";
+
+/// The class of an arm's inverse kinematics and its steps.
+pub fn steps_of_inverse_kinematics(model: &Model) -> String {
+    match inverse_kinematics::of(&model.manipulator) {
+        Ok(found) => found.text(),
+        Err(reason) => format!("{INVERSE_KINEMATICS}: none, {reason}\n"),
+    }
+}
+
+/// The items of names, all if there are none.
+///
+/// # Errors
+/// A name that no quantity has, with the nearest.
+pub fn items(model: &Model, quantities: &[String]) -> Result<Vec<Item>, String> {
+    if quantities.is_empty() {
+        return Ok(Item::all());
+    }
+    let dof = model.manipulator.dof();
+    let mut items = Vec::new();
+    for name in quantities {
+        let named = Item::named(name, dof);
+        if named.is_empty() {
+            let names: Vec<String> = Item::names().into_iter().chain([INVERSE_KINEMATICS.to_owned()]).collect();
+            let meant = function_meant(&name.replace('-', "_"), &names.iter().map(String::as_str).collect::<Vec<_>>())
+                .map_or_else(String::new, |meant| format!("did you mean `{meant}`? "));
+            let known: Vec<String> = names.chunks(4).map(|names| names.join(", ")).collect();
+            let lists: Vec<String> = Item::lists().iter().map(|of| format!("{of}_1 to {of}_{dof}")).collect();
+            return Err(format!(
+                "there is no quantity `{name}`\n  {meant}known are\n  {},\n  {}",
+                known.join(",\n  "),
+                lists.join(", ")
+            ));
+        }
+        items.extend(named);
+    }
+    Ok(items)
+}

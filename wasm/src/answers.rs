@@ -1,0 +1,178 @@
+//! Requests and their answers. `name` and `text` are a file's, `about` says what is asked for:
+//!
+//! | `about` | beside `name` and `text` | answer |
+//! |---|---|---|
+//! | `check` | | a file as `armgen check --format json` has it |
+//! | `import` | `tip`, `lock` (pairs of joint and value), `massless`, `inertia_as_written` | `yaml`, `report`, `lines`, `diagnostics` |
+//! | `summary` | | `text` of `armgen check` |
+//! | `picture` | `nonce` | `page`, the first step |
+//! | `rest` | | `rest`, its second step |
+//! | `functions` | | `functions`: names with titles and, of those that the arm lacks, reasons |
+//! | `show` | `quantity`, `symbolic` | `text`, `latex` |
+//! | `code` | `language`, `functions` | `files`: pairs of name and text; `note` |
+//!
+//! A request that is none has the answer `fault`. A faulty description has no other answers than `check`'s.
+
+use std::cell::RefCell;
+use std::path::Path;
+
+use armgen_codegen::diagnostic::Diagnostics;
+use armgen_codegen::emit::Language;
+use armgen_codegen::kinds::Scalar;
+use armgen_codegen::program::Trig;
+use armgen_codegen::schedule::{Options, Selection};
+use armgen_codegen::show::{Reading, Sheet, Style};
+use armgen_codegen::source::Source;
+use armgen_codegen::{catalogue, validate, Generated, Model};
+use armgen_texts::{json, module, shown, summary};
+use serde_json::{json, Value};
+
+/// The answer to a request.
+pub(crate) fn of(request: &[u8]) -> Value {
+    let request: Value = match serde_json::from_slice(request) {
+        Ok(request) => request,
+        Err(fault) => return json!({ "fault": fault.to_string() }),
+    };
+    let source = Source::new(word(&request, "name"), word(&request, "text"));
+    answer(&request, &source).unwrap_or_else(|fault| json!({ "fault": fault }))
+}
+
+/// A text of a request; empty if it has none.
+fn word<'r>(request: &'r Value, key: &str) -> &'r str {
+    request[key].as_str().unwrap_or_default()
+}
+
+fn answer(request: &Value, source: &Source) -> Result<Value, String> {
+    Ok(match word(request, "about") {
+        "check" => {
+            let (valid, diagnostics) = validate::read_for(source, Scalar::F64);
+            json::of_file(source, valid.as_ref().map(|(manipulator, _)| manipulator), &diagnostics)
+        }
+        "import" => import(request, source),
+        "summary" => json!({ "text": summary::of(source, &[], false) }),
+        "picture" => {
+            let (page, diagnostics) = armgen_page::picture(source, word(request, "nonce"));
+            json!({ "page": page, "file": json::of_file(source, None, &diagnostics) })
+        }
+        "rest" => json!({ "rest": armgen_page::rest(source) }),
+        "functions" => json!({ "functions": functions(&model(source)?) }),
+        "show" => show(request, &model(source)?)?,
+        "code" => code(request, source)?,
+        other => return Err(format!("there is no request `{other}`")),
+    })
+}
+
+/// The model of a valid description.
+fn model(source: &Source) -> Result<Model, String> {
+    let (valid, _) = validate::read_for(source, Scalar::F64);
+    valid.map(|(manipulator, _)| Model::new(manipulator)).ok_or_else(faulty)
+}
+
+fn faulty() -> String {
+    "the description is faulty".to_owned()
+}
+
+fn import(request: &Value, source: &Source) -> Value {
+    let pair = |pair: &Value| Some((pair[0].as_str()?.to_owned(), pair[1].as_str()?.to_owned()));
+    let options = armgen_import::Options {
+        lock: request["lock"].as_array().into_iter().flatten().filter_map(pair).collect(),
+        tip: request["tip"].as_str().map(str::to_owned),
+        massless: request["massless"] == true,
+        inertia_as_written: request["inertia_as_written"] == true,
+        ..armgen_import::Options::default()
+    };
+    let alone = |_: &str| Err("the playground reads one file alone: import the model with the program".to_owned());
+    let (imported, diagnostics) = match armgen_import::included(source, &alone) {
+        Ok(whole) => armgen_import::import(&whole, &options),
+        Err(fault) => {
+            let mut faults = Diagnostics::new();
+            faults.push(*fault);
+            (None, faults)
+        }
+    };
+    let report = imported.as_ref().map(|imported| &imported.report);
+    json!({
+        "yaml": imported.as_ref().map(|imported| &imported.yaml),
+        "report": report.map(armgen_import::Report::to_json),
+        "lines": report.map(armgen_import::Report::short_lines),
+        "file": json::of_file(source, None, &diagnostics),
+    })
+}
+
+/// The functions of the catalogue, and what `armgen show` has besides.
+fn functions(model: &Model) -> Vec<Value> {
+    catalogue::functions()
+        .map(|(quantity, with)| {
+            let missing = (quantity.missing)(model, with);
+            json!({ "name": quantity.function_name(with), "title": quantity.documentation.title, "missing": missing })
+        })
+        .collect()
+}
+
+/// A quantity as `armgen show` writes it.
+fn show(request: &Value, model: &Model) -> Result<Value, String> {
+    let name = word(request, "quantity");
+    if name == shown::INVERSE_KINEMATICS {
+        return Ok(json!({ "text": shown::steps_of_inverse_kinematics(model), "latex": null }));
+    }
+    let reading = if request["symbolic"] == true { Reading::Symbolic } else { Reading::Nominal };
+    let style = Style { form: shown::usual_form(model), digits: None };
+    let sheet = Sheet::in_style(model, &shown::items(model, &[name.to_owned()])?, reading, style);
+    Ok(json!({ "text": sheet.text(), "latex": sheet.latex() }))
+}
+
+/// What makes a module, beside the text of its description.
+type Choice = (Trig, Vec<String>);
+
+thread_local! {
+    /// The modules of the last description, by what they were made with: languages share them.
+    static LAST: RefCell<(Option<Source>, Vec<(Choice, Generated)>)> = const { RefCell::new((None, Vec::new())) };
+}
+
+/// The files of a module, those of `armgen generate --ik` where the language has inverse kinematics.
+fn code(request: &Value, source: &Source) -> Result<Value, String> {
+    let language = Language::ALL.into_iter().find(|language| language.name() == word(request, "language"));
+    let language = language.ok_or_else(|| format!("there is no language `{}`", word(request, "language")))?;
+    let names = request["functions"].as_array().into_iter().flatten().filter_map(Value::as_str);
+    let choice: Choice = (Trig::of_language(language), names.map(str::to_owned).collect());
+    LAST.with_borrow_mut(|(last, made)| {
+        let same = last.as_ref().is_some_and(|last| (last.name(), last.text()) == (source.name(), source.text()));
+        if !same {
+            (*last, *made) = (Some(source.clone()), Vec::new());
+        }
+        let at = match made.iter().position(|(with, _)| *with == choice) {
+            Some(at) => at,
+            None => {
+                made.push((choice.clone(), generated(source, &choice)?));
+                made.len() - 1
+            }
+        };
+        files(&made[at].1, language)
+    })
+}
+
+fn generated(source: &Source, (trig, names): &Choice) -> Result<Generated, String> {
+    let functions = match names.as_slice() {
+        [] => Selection::ALL,
+        names => Selection::named(names).map_err(|unknown| unknown.to_string())?,
+    };
+    let options = Options { trig: *trig, functions, ..Options::default() };
+    let mut generated = armgen_codegen::generate(source, &options).0.ok_or_else(faulty)?;
+    // Without them the documentation is shorter.
+    let _ = armgen_certify::document_bounds(source, &mut generated);
+    Ok(generated)
+}
+
+fn files(generated: &Generated, language: Language) -> Result<Value, String> {
+    let out = module::file_of(language, "robot");
+    let mut files = module::files(generated, language, Path::new(&out));
+    let mut note = None;
+    if language.is_c() || language == Language::Rust {
+        match generated.no_inverse_kinematics() {
+            None => files.push(module::inverse_kinematics(generated, language, Path::new(&out))?),
+            Some(reason) => note = Some(format!("there is no inverse kinematics: {reason}")),
+        }
+    }
+    let files: Vec<Value> = files.into_iter().map(|(path, text)| json!([path.display().to_string(), text])).collect();
+    Ok(json!({ "files": files, "note": note }))
+}
