@@ -387,6 +387,48 @@ fn with_a_finger(frame: &str) -> [String; 2] {
     [urdf, mjcf]
 }
 
+/// Covers and cameras on earlier links of a series of joints leave no choice; a tool's frame there, a branch, or a finger at the end do.
+#[test]
+fn leaves_on_earlier_links_of_a_series_are_parts_of_them() {
+    let inertial = "<inertial><mass value='1'/><inertia ixx='1' iyy='1' izz='1' ixy='0' ixz='0' iyz='0'/></inertial>";
+    let arm = |leaf: &str, last: &str, last_parent: &str| {
+        format!(
+            "<robot name='r'><link name='b'/><link name='l'>{inertial}</link><link name='m'>{inertial}</link>\
+             <link name='{last}'>{inertial}</link><link name='{leaf}'>{inertial}</link>\
+             <joint name='j1' type='continuous'><parent link='b'/><child link='l'/></joint>\
+             <joint name='j2' type='continuous'><parent link='l'/><child link='m'/><axis xyz='0 1 0'/></joint>\
+             <joint name='j3' type='continuous'><parent link='{last_parent}'/><child link='{last}'/></joint>\
+             <joint name='f' type='fixed'><parent link='l'/><child link='{leaf}'/></joint></robot>"
+        )
+    };
+    let cases = [
+        ("cover", "hand", "m", true),
+        ("camera_link", "hand", "m", true),
+        ("tool0", "hand", "m", false),
+        ("cover", "gripper_finger", "m", false),
+        ("cover", "hand", "l", false),
+    ];
+    for (leaf, last, last_parent, accepted) in cases {
+        let text = arm(leaf, last, last_parent);
+        let source = Source::new("arm", text.as_str());
+        let (imported, diagnostics) = import(&source, &Options::default());
+        assert_eq!(imported.is_some(), accepted, "{leaf}, {last}: {}", diagnostics.render(&source, Colour::Never));
+        let Some(imported) = imported else {
+            assert_eq!(diagnostics.iter().next().expect("a fault").code.name(), "several-tips");
+            continue;
+        };
+        assert_eq!(valid(&imported.yaml).dof(), 3, "{}", imported.yaml);
+        let note =
+            format!("Links fixed to an earlier link are parts of it; `--tip` ends the arm at one of them: `{leaf}` (1 joint)");
+        let told = imported.yaml.split_whitespace().filter(|word| *word != "#").collect::<Vec<_>>().join(" ");
+        assert!(told.contains(&note), "{told}");
+        let chosen = Options { tip: Some(last.to_owned()), ..Options::default() };
+        let body = |yaml: &str| yaml.split_once("\njoints:").expect("joints").1.to_owned();
+        let same = import(&source, &chosen).0.expect("a chosen tip").yaml;
+        assert_eq!(body(&same), body(&imported.yaml));
+    }
+}
+
 /// One rule for both formats: the suggestion, copied, gives the arm without its finger; and so does that of the warning where there is no choice.
 #[test]
 fn the_suggested_tip_leaves_fingers_out() {

@@ -50,9 +50,13 @@ pub(super) fn only(tree: &Tree, base: usize, locks: &Locks, diagnostics: &mut Di
     if !groups.is_empty() {
         frames.into_iter().for_each(|frame| groups.entry(frame.last).or_default().push(frame));
     }
+    let mut notes = Vec::new();
     if groups.len() > 1 {
-        diagnostics.push(several(tree, base, locks, &groups));
-        return None;
+        let Some(note) = keep_the_longest_of_a_series(tree, base, &mut groups) else {
+            diagnostics.push(several(tree, base, locks, &groups));
+            return None;
+        };
+        notes.push(note);
     }
     let Some((&last, leaves)) = groups.iter().next() else {
         let message = format!("nothing moves below `{}`", shown(&tree.links[base].name));
@@ -65,7 +69,7 @@ pub(super) fn only(tree: &Tree, base: usize, locks: &Locks, diagnostics: &mut Di
     }
     let bodies: Vec<usize> = leaves.iter().map(|leaf| leaf.link).filter(|&link| tree.links[link].role != Role::Frame).collect();
     if let ([only], 1) = (&bodies[..], leaves.len()) {
-        return Some((*only, Vec::new()));
+        return Some((*only, notes));
     }
     let mut tip = tree.joints[last].child;
     // The frame of the body, not the one that its joint turns about.
@@ -84,7 +88,34 @@ pub(super) fn only(tree: &Tree, base: usize, locks: &Locks, diagnostics: &mut Di
         named.join(", "),
         if others.len() > NAMED { ", ..." } else { "" }
     );
-    Some((tip, vec![note]))
+    notes.push(note);
+    Some((tip, notes))
+}
+
+/// Where all moving joints follow each other, leaves on earlier links are covers or cameras: removes these, and notes them.
+///
+/// A finger at the end, or the frame of a tool on an earlier link, leaves the choice to the user.
+fn keep_the_longest_of_a_series(tree: &Tree, base: usize, groups: &mut BTreeMap<usize, Vec<Candidate>>) -> Option<String> {
+    let (&last, longest) = groups.iter().max_by_key(|(_, leaves)| leaves[0].joints)?;
+    let path = tree.path(base, longest[0].link)?;
+    let earlier: Vec<Candidate> =
+        groups.iter().filter(|(&joint, _)| joint != last).flat_map(|(_, leaves)| leaves.clone()).collect();
+    let is_series = earlier.iter().all(|leaf| path.contains(&leaf.last));
+    let has_tool = earlier.iter().any(|leaf| names::tool(&tree.links[leaf.link].name).is_some());
+    if !is_series || has_tool || is_finger(tree, last) {
+        return None;
+    }
+    groups.retain(|&joint, _| joint == last);
+    let named: Vec<String> = earlier
+        .iter()
+        .take(NAMED)
+        .map(|leaf| format!("`{}` ({})", shown(&tree.links[leaf.link].name), number(leaf.joints)))
+        .collect();
+    let more = if earlier.len() > NAMED { ", ..." } else { "" };
+    Some(format!(
+        "links fixed to an earlier link are parts of it; `--tip` ends the arm at one of them: {}{more}",
+        named.join(", ")
+    ))
 }
 
 /// The refusal of a file with several links that may be the tip, and the best of them: the frame of a tool; else the link before the fingers;

@@ -1,0 +1,47 @@
+"""The blocks of Python of the tutorial, and the notebooks, where matplotlib and nbclient are installed."""
+
+import pathlib
+import re
+import subprocess
+
+import pytest
+
+from conftest import ROOT
+
+DOCS = ROOT / "docs"
+
+
+def blocks(page):
+    """The blocks of code of a page: language and text."""
+    return re.findall(r"^```(python|sh)\n(.*?)^```$", page.read_text(), re.M | re.S)
+
+
+def test_the_tutorial(tmp_path, monkeypatch):
+    matplotlib = pytest.importorskip("matplotlib")
+    matplotlib.use("Agg")
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "robots").symlink_to(ROOT / "robots")
+    names = {}
+    for language, code in blocks(DOCS / "gravity-compensation.md"):
+        if language == "sh":
+            for line in filter(None, code.splitlines()):
+                subprocess.run(line.split(), check=True, capture_output=True)
+        else:
+            exec(compile(code, "gravity-compensation.md", "exec"), names)
+    assert (tmp_path / "gravity-compensation.png").stat().st_size > 10_000
+    # The arm without a controller is the control of the others.
+    assert abs(names["falling"][-1] - names["q0"]).max() > 0.5
+    assert abs(names["sagging"][-1] - names["q0"]).max() > 0.1
+
+
+@pytest.mark.parametrize("notebook", sorted((DOCS / "notebooks").glob("*.ipynb")), ids=lambda path: path.stem)
+def test_the_notebook(notebook):
+    nbformat, nbclient = pytest.importorskip("nbformat"), pytest.importorskip("nbclient")
+    cells = nbformat.read(notebook, as_version=4)
+    nbformat.validate(cells)
+    code = [cell for cell in cells.cells if cell.cell_type == "code"]
+    assert not any(cell.outputs or cell.execution_count for cell in code), "a notebook has no stored outputs"
+    nbclient.NotebookClient(cells, timeout=120, kernel_name="python3", resources={"metadata": {"path": notebook.parent}}).execute()
+    if notebook.stem == "first-look":
+        shown = [output.data["text/html"] for cell in code for output in cell.outputs if "text/html" in output.get("data", {})]
+        assert len(shown) == 1 and "<iframe" in shown[0]
