@@ -285,6 +285,7 @@ mod tests {
     fn a_column_has_the_unit_of_the_joint_whose_whole_name_it_has() {
         let row = |name: &str, revolute: bool| Row {
             name: name.into(),
+            branch: None,
             revolute,
             denavit_hartenberg: None,
             urdf: None,

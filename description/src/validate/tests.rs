@@ -2,7 +2,7 @@ use super::*;
 use crate::diagnostic::Colour;
 use crate::exact::{Number, Rational};
 use crate::kinds::{JointKind, ParameterId, TaskRow};
-use crate::manipulator::{Joint, Placement, RegressorChoice};
+use crate::manipulator::{Joint, LinkId, Placement, RegressorChoice};
 
 /// The arm with the faults that need no equations.
 fn read(source: &Source) -> (Option<(Manipulator, Places)>, Diagnostics) {
