@@ -94,7 +94,7 @@ pub fn page(source: &Source, runs: &[Run]) -> Result<(Option<String>, Diagnostic
 }
 
 /// The page in the first of two steps: everything but the equations and the table of costs, which take most of the time.
-/// Its script waits for a message from the window around it, the [`Rest`] as JSON. `nonce` marks its script and its style for the
+/// Its script waits for a message from the window around it with the result of [`rest`]. `nonce` marks its script and its style for the
 /// policy of that window.
 pub fn picture(source: &Source, nonce: &str) -> (Option<String>, Diagnostics) {
     let (valid, mut diagnostics) = validate::read_for(source, Scalar::F64);
