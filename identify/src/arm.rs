@@ -4,7 +4,7 @@
 //! tau = Y_b(q, dq, ddq) T phi + tau_known,      phi: ten of each link, then rotor inertias
 //! ```
 //!
-//! T and the choice of base parameters are exact, from `armgen-codegen`. Friction is not part of Y_b. What is known is the torque of the masses
+//! T and the choice of base parameters are exact, from `armgen-codegen`. Friction is not part of Y_b; `dependent` has the terms that depend on it. What is known is the torque of the masses
 //! of rotors, of springs, armatures and of the viscous friction of rotors.
 
 use armgen_codegen::derive::base::base_combinations;
@@ -16,6 +16,10 @@ use armgen_codegen::schedule::{self, Options, Selection};
 use armgen_codegen::Model;
 use armgen_evaluate::Program;
 use nalgebra::{DMatrix, DVector, Matrix3, Vector3};
+
+mod apart;
+
+pub use apart::Dependent;
 
 use crate::body::{self, Ten};
 
@@ -94,6 +98,8 @@ pub struct Arm {
     pub payload: Option<Ten>,
     /// Joints with a rotor, in the order of phi.
     pub rotors: Vec<usize>,
+    /// Terms of friction that no motion tells from other parameters.
+    pub dependent: Vec<Dependent>,
     regressor: Program<f64>,
     known: Option<Program<f64>>,
 }
@@ -208,6 +214,7 @@ impl Arm {
         let wanted = if has_rotor_masses { vec!["regressor", "known_torque"] } else { vec!["regressor"] };
         let model = Model::new(manipulator);
         let (vector, combinations) = base_combinations(&model.manipulator, &model.field);
+        let dependent = apart::dependent_friction(&model, &vector);
         let combination = DMatrix::from_fn(vector.len(), names.len(), |row, column| combinations[row][column].to_f64());
         let functions = Selection::named(wanted).expect("functions of every arm with mass");
         let module = schedule::module(&model, &Options { functions, ..Options::default() });
@@ -236,6 +243,7 @@ impl Arm {
             load,
             payload: given.payload.as_ref().map(|payload| ten_of(given, &payload.body)),
             rotors,
+            dependent,
             regressor,
             known: programs.next(),
         })

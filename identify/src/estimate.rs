@@ -64,11 +64,18 @@ pub struct Estimate<'a> {
     pub spreads: Vec<f64>,
 }
 
-/// Least improvement, of the root of the mean square, that a delay or a term of friction must bring.
+/// Least improvement, of the root of the mean square, that a delay or Stribeck friction must bring.
 const WORTH: f64 = 0.99;
 
 /// Blocks of time of the cross-validation.
 const FOLDS: usize = 5;
+
+/// The standard error of a sum of parts, from their spread.
+fn error_of_sum(parts: &[f64]) -> f64 {
+    let n = parts.len() as f64;
+    let mean = parts.iter().sum::<f64>() / n;
+    (parts.iter().map(|part| (part - mean).powi(2)).sum::<f64>() * n / (n - 1.0)).sqrt()
+}
 
 impl<'a> Estimate<'a> {
     /// Starts from nothing: no delay, and the simplest friction.
@@ -292,38 +299,7 @@ impl<'a> Estimate<'a> {
         }
     }
 
-    /// Whether offset and load friction of a joint can be told from its other torques, at random states.
-    pub fn tells_apart(&self, joint: usize) -> (bool, bool) {
-        let n = self.arm.dof();
-        let mut seed = 1u64;
-        let mut draw = || {
-            seed = seed.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
-            (seed >> 11) as f64 / (1u64 << 53) as f64 * 2.0 - 1.0
-        };
-        let states = self.arm.base.len() + 20;
-        let mut of = |scale: f64| (0..states * n).map(|_| scale * draw()).collect::<Vec<f64>>();
-        let (q, dq, ddq) = (of(2.0), of(1.5), of(3.0));
-        let y = self.arm.regressor(&q, &dq, &ddq);
-        let base = self.arm.base.len();
-        let a = DMatrix::from_row_slice(states * n, base, &y);
-        let b = DVector::from_fn(states * n, |k, _| if k % n == joint { 1.0 } else { 0.0 });
-        let h = a.transpose() * &a;
-        let gram = Gram { g: a.transpose() * &b, bb: b.dot(&b), h };
-        let x = solve_fast(&gram);
-        let offset = (&b - &a * x).norm() > 1e-6 * b.norm();
-        let pi = if self.x.as_slice()[..base].iter().any(|x| *x != 0.0) {
-            self.pi()
-        } else {
-            (&self.arm.combination * self.arm.nominal()).as_slice().to_vec()
-        };
-        let g: Vec<f64> = self.arm.gravity(&q, &pi).into_iter().skip(joint).step_by(n).map(f64::abs).collect();
-        let (least, most) = g.iter().fold((f64::INFINITY, 0.0f64), |(a, b), g| (a.min(*g), b.max(*g)));
-        let greatest = self.arm.gravity(&q, &pi).into_iter().fold(0.0f64, |a, g| a.max(g.abs()));
-        let load = most - least > 1e-6 * most && most > 1e-6 * greatest;
-        (offset, load)
-    }
-
-    /// Adds terms of friction one at a time where cross-validation in blocks of time asks for them; `chosen` says what there is.
+    /// Adds a term of friction to the joints whose residual of cross-validation in blocks of time it lowers; `chosen` has what there is.
     pub fn choose(&mut self, chosen: &mut [Vec<Friction>], candidate: Friction) {
         let n = self.arm.dof();
         let (equations, _) = self.equations();
@@ -345,51 +321,85 @@ impl<'a> Estimate<'a> {
         }
         let mut whole = Gram::zero(equations.columns);
         folds.iter().for_each(|gram| whole.add(gram));
-        let score = |active: &[usize], joint: usize| -> f64 {
+        let scores = |active: &[usize], joint: usize| -> Vec<f64> {
             (0..FOLDS)
                 .map(|f| {
                     let mut rest = whole.of(active);
                     rest.subtract(&folds[f].of(active));
                     grams[joint * FOLDS + f].of(active).squares(&solve_fast(&rest))
                 })
-                .sum()
+                .collect()
         };
+        let fixed: Vec<usize> = self.fixed.iter().map(|(place, _)| *place).collect();
+        let mut taken = self.active.clone();
         for joint in 0..n {
             if chosen[joint].contains(&candidate) {
                 continue;
             }
-            let before = score(&self.active, joint);
             let mut active = self.active.clone();
-            for session in 0..self.sessions {
-                let place = self.place(Column::Friction(session, joint, candidate));
-                if self.fixed.iter().all(|(fixed, _)| *fixed != place) {
-                    active.push(place);
-                }
-            }
+            active.extend((0..self.sessions).map(|session| self.place(Column::Friction(session, joint, candidate))));
+            active.retain(|place| !fixed.contains(place));
             active.sort_unstable();
-            if active.len() > self.active.len() && score(&active, joint) < WORTH * WORTH * before {
-                chosen[joint].push(candidate);
-                self.active = active;
+            if active.len() == self.active.len() {
+                continue;
             }
+            let (before, after) = (scores(&self.active, joint), scores(&active, joint));
+            let gains: Vec<f64> = before.iter().zip(&after).map(|(before, after)| before - after).collect();
+            let (gain, all) = (gains.iter().sum::<f64>(), before.iter().sum::<f64>());
+            let wanted = match candidate {
+                // Where the sign of a rate is smoothed there is a little of such a term.
+                Friction::Stribeck => ((1.0 - WORTH * WORTH) * all).max(error_of_sum(&gains)),
+                _ => 0.0,
+            };
+            if gain > wanted {
+                chosen[joint].push(candidate);
+                taken.extend(active);
+            }
+        }
+        taken.sort_unstable();
+        taken.dedup();
+        self.active = taken;
+    }
+
+    /// Takes back, the least significant first, those of the terms that are smaller than their three-sigma interval, or brake negatively.
+    pub fn prune(&mut self, chosen: &mut [Vec<Friction>], terms: &[Friction]) {
+        loop {
+            let (_, solution, covariance) = self.finish();
+            let significance = |(k, &place): (usize, &usize)| match self.columns[place] {
+                Column::Friction(session, joint, term) if session + 1 == self.sessions && terms.contains(&term) => {
+                    let sigma = covariance.matrix[(k, k)].max(0.0).sqrt();
+                    let value = if term.is_not_negative() { solution.x[k] } else { solution.x[k].abs() };
+                    Some((value / (covariance.reach * sigma).max(f64::MIN_POSITIVE), joint, term))
+                }
+                _ => None,
+            };
+            let least = self.active.iter().enumerate().filter_map(significance).min_by(|a, b| a.0.total_cmp(&b.0));
+            let Some((_, joint, term)) = least.filter(|(ratio, ..)| *ratio < 1.0) else { return };
+            chosen[joint].retain(|chosen| *chosen != term);
+            self.activate(&|joint, term| chosen[joint].contains(&term));
         }
     }
 
-    /// The velocity of Stribeck friction of a joint, by golden section over its logarithm in 0.01 to 1.
-    pub fn stribeck_velocity(&mut self, joint: usize) {
+    /// The velocity of Stribeck friction of a joint with the least residual, among those that the log shows: from where the sign of the rate is
+    /// certain to half of the highest rate. False: the least is at an end, and nothing changes.
+    pub fn stribeck_velocity(&mut self, joint: usize) -> bool {
+        let n = self.arm.dof();
         let (equations, _) = self.equations();
         let residuals = equations.residuals(&self.active, &DVector::from_fn(self.active.len(), |k, _| self.x[self.active[k]]));
         let of: Vec<usize> = (0..residuals.len()).filter(|&k| equations.rows[k].joint == joint).collect();
         let first = self.place(Column::Friction(0, joint, Friction::Viscous));
+        let has_cubic = self.active.contains(&(first + Friction::Cubic as usize));
         let cost = |log: f64| {
             let mut column = Vec::new();
             for (piece, sizes) in self.pieces.iter().zip(&self.sizes) {
                 column.extend(piece.friction(joint, Friction::Stribeck, log.exp(), sizes));
             }
-            let mut small = Equations { columns: 4, ..Equations::default() };
+            let mut small = Equations { columns: 5, ..Equations::default() };
             let mut weights = Vec::new();
             for (&k, stribeck) in of.iter().zip(&column) {
                 let row = equations.row(k);
-                small.a.extend([row[first], row[first + 1], 1.0, *stribeck]);
+                let cubic = if has_cubic { row[first + Friction::Cubic as usize] } else { 0.0 };
+                small.a.extend([row[first], row[first + 1], 1.0, *stribeck, cubic]);
                 small.b.push(residuals[k]);
                 small.rows.push(equations.rows[k]);
                 weights.push(self.weights[k]);
@@ -397,11 +407,24 @@ impl<'a> Estimate<'a> {
             let gram = small.gram(&weights);
             gram.squares(&solve_fast(&gram))
         };
+        let fastest =
+            self.pieces.iter().flat_map(|piece| piece.dq.iter().skip(joint).step_by(n)).fold(0.0f64, |a, dq| a.max(dq.abs()));
+        let certain = self.pieces.iter().fold(0.0f64, |most, piece| most.max(3.0 * piece.eps[joint]));
+        let (from, to) = (certain.ln(), (0.5 * fastest).min(1.0).ln());
+        if from + 0.5 > to {
+            return false;
+        }
+        let grid: Vec<f64> = (0..=8).map(|k| from + (to - from) * f64::from(k) / 8.0).collect();
+        let costs: Vec<f64> = grid.iter().map(|&log| cost(log)).collect();
+        let best = (0..grid.len()).min_by(|&a, &b| costs[a].total_cmp(&costs[b])).expect("a grid");
+        if best == 0 || best + 1 == grid.len() {
+            return false;
+        }
         let ratio = 0.5 * (5f64.sqrt() - 1.0);
-        let (mut low, mut high) = (0.01f64.ln(), 0.0);
+        let (mut low, mut high) = (grid[best - 1], grid[best + 1]);
         let (mut a, mut b) = (high - ratio * (high - low), low + ratio * (high - low));
         let (mut cost_a, mut cost_b) = (cost(a), cost(b));
-        for _ in 0..10 {
+        for _ in 0..8 {
             if cost_a < cost_b {
                 (high, b, cost_b) = (b, a, cost_a);
                 a = high - ratio * (high - low);
@@ -413,6 +436,7 @@ impl<'a> Estimate<'a> {
             }
         }
         self.velocities[joint] = (0.5 * (low + high)).exp();
+        true
     }
 
     /// The solution with intervals, for the columns that are active.
@@ -431,8 +455,40 @@ impl<'a> Estimate<'a> {
         let solution = solve(&gram, &start);
         self.take(&solution.x);
         let residuals = equations.residuals(&self.active, &solution.x);
-        let covariance = covariance(&equations, &self.active, &residuals, &self.weights, &solution.inverse, n);
+        let covariance = self.covariance(&equations, &residuals, &solution, n);
         (equations, solution, covariance)
+    }
+
+    /// The covariance of the active columns. Velocities of Stribeck friction were found from the logs, too: their columns are part of it.
+    fn covariance(&self, equations: &Equations, residuals: &[f64], solution: &Solution, n: usize) -> Covariance {
+        let step = 1e-3;
+        let mut extended = equations.clone();
+        let mut active = self.active.clone();
+        for &place in &self.active {
+            let Column::Friction(session, joint, Friction::Stribeck) = self.columns[place] else { continue };
+            // Columns of gains are empty where no gain is found.
+            let slope = self.place(Column::Gain(joint));
+            let column = |velocity: f64| -> Vec<f64> {
+                let pieces = self.pieces.iter().zip(&self.sizes);
+                pieces.flat_map(|(piece, sizes)| piece.friction(joint, Friction::Stribeck, velocity, sizes)).collect()
+            };
+            let velocity = self.velocities[joint];
+            let difference = column(velocity * (1.0 + step)).into_iter().zip(column(velocity)).map(|(a, b)| (a - b) / step);
+            let rows = (0..extended.rows.len()).filter(|&k| equations.rows[k].joint == joint);
+            for (k, difference) in rows.zip(difference).collect::<Vec<_>>() {
+                if self.runs[equations.rows[k].log].session == session {
+                    extended.a[k * extended.columns + slope] += self.x[place] * difference;
+                }
+            }
+            active.extend((!active.contains(&slope)).then_some(slope));
+        }
+        if active.len() == self.active.len() {
+            return covariance(equations, &active, residuals, &self.weights, &solution.inverse, n);
+        }
+        let whole = solve(&extended.gram(&self.weights).of(&active), &DVector::zeros(active.len()));
+        let found = covariance(&extended, &active, residuals, &self.weights, &whole.inverse, n);
+        let own = self.active.len();
+        Covariance { matrix: found.matrix.view((0, 0), (own, own)).into_owned(), ..found }
     }
 
     /// Drive gains by maximum likelihood in the currents: Gauss-Newton in (1/K, pi, f), noise on the currents.

@@ -85,6 +85,8 @@ pub struct Identified {
     pub log_det_per_parameter: f64,
     /// Directions that the logs do not show: names, and the direction in words.
     pub unexcited: Vec<(Vec<String>, String)>,
+    /// Terms of friction that no motion tells from other parameters, in words.
+    pub inseparable: Vec<String>,
     /// Robust spread of residuals, by joint.
     pub spreads: Vec<f64>,
     /// Covariance of the base parameters.
@@ -155,6 +157,7 @@ pub fn identify(arm: &Arm, inputs: &[Input], options: &Options, findings: &mut F
     let simple = |_: usize, term: Friction| matches!(term, Friction::Viscous | Friction::Coulomb | Friction::Offset);
     if options.cutoff.is_none() {
         let mut first = Estimate::new(arm, &pieces, &runs, sessions.len());
+        fix(arm, options, &mut first);
         first.activate(&simple);
         let (equations, _) = first.equations();
         first.fit(&equations);
@@ -192,19 +195,8 @@ pub fn identify(arm: &Arm, inputs: &[Input], options: &Options, findings: &mut F
     } else {
         estimate.delays();
     }
-    let apart: Vec<(bool, bool)> = (0..n).map(|j| estimate.tells_apart(j)).collect();
-    let mut chosen: Vec<Vec<Friction>> = apart
-        .iter()
-        .map(|(offset, load)| {
-            let wanted = options.friction.clone().unwrap_or_else(|| vec![Friction::Viscous, Friction::Coulomb, Friction::Offset]);
-            let possible = |term: &Friction| match term {
-                Friction::Offset => *offset,
-                Friction::Load => *load,
-                _ => true,
-            };
-            wanted.into_iter().filter(possible).collect()
-        })
-        .collect();
+    let wanted = options.friction.clone().unwrap_or_else(|| vec![Friction::Viscous, Friction::Coulomb, Friction::Offset]);
+    let mut chosen: Vec<Vec<Friction>> = vec![wanted; n];
     let activate = |estimate: &mut Estimate<'_>, chosen: &[Vec<Friction>]| {
         estimate.activate(&|joint, term| chosen[joint].contains(&term));
         let (equations, _) = estimate.equations();
@@ -214,19 +206,26 @@ pub fn identify(arm: &Arm, inputs: &[Input], options: &Options, findings: &mut F
     for round in 0..3 {
         estimate.renew_sizes();
         if round == 0 && options.friction.is_none() {
-            let mut with = chosen.clone();
-            estimate.choose(&mut with, Friction::Load);
-            for j in (0..n).filter(|&j| apart[j].1) {
-                chosen[j] = with[j].clone();
-            }
+            estimate.choose(&mut chosen, Friction::Load);
         }
         activate(&mut estimate, &chosen);
     }
     if options.friction.is_none() {
+        // Cubic friction alone takes a part of Stribeck friction, so it comes last.
+        let inside: Vec<bool> = (0..n).map(|j| estimate.stribeck_velocity(j)).collect();
+        let mut with = chosen.clone();
+        estimate.choose(&mut with, Friction::Stribeck);
+        (0..n).filter(|&j| inside[j]).for_each(|j| chosen[j].clone_from(&with[j]));
+        activate(&mut estimate, &chosen);
+        for _ in 0..2 {
+            (0..n).filter(|&j| chosen[j].contains(&Friction::Stribeck)).for_each(|j| {
+                estimate.stribeck_velocity(j);
+            });
+            activate(&mut estimate, &chosen);
+        }
         estimate.choose(&mut chosen, Friction::Cubic);
         activate(&mut estimate, &chosen);
-        (0..n).for_each(|j| estimate.stribeck_velocity(j));
-        estimate.choose(&mut chosen, Friction::Stribeck);
+        estimate.prune(&mut chosen, &[Friction::Load, Friction::Cubic, Friction::Stribeck]);
         activate(&mut estimate, &chosen);
     }
     if options.delay.is_none() {
@@ -300,6 +299,7 @@ pub fn identify(arm: &Arm, inputs: &[Input], options: &Options, findings: &mut F
         condition: solution.condition,
         log_det_per_parameter: solution.log_det_per_column,
         unexcited,
+        inseparable: inseparable(arm, options),
         spreads: estimate.spreads.clone(),
         blocks: covariance.blocks,
         ..Identified::default()
@@ -425,14 +425,16 @@ fn fitting(arm: &Arm, log: &str, options: &Options, findings: &mut Findings) {
     }
 }
 
-/// Columns with given values.
+/// Columns with given values: options, and terms that no motion tells from others.
 fn fix(arm: &Arm, options: &Options, estimate: &mut Estimate<'_>) {
     for (j, joint) in arm.joints.iter().enumerate() {
         for (place, term) in Friction::ALL.into_iter().enumerate() {
             let name = format!("{}.friction.{}", joint.name, term.key());
             let given = options.fixed.iter().find(|(fixed, _)| *fixed == name).map(|(_, value)| *value);
             let kept = options.keep.contains(&name).then(|| joint.friction[place].unwrap_or(0.0));
-            if let Some(value) = given.or(kept) {
+            let dependent = arm.dependent.iter().any(|of| (of.joint, of.term) == (j, place));
+            let of_file = dependent.then(|| joint.friction[place].unwrap_or(0.0));
+            if let Some(value) = given.or(kept).or(of_file) {
                 for session in 0..estimate.sessions {
                     let place = estimate.place(Column::Friction(session, j, term));
                     estimate.fixed.push((place, value));
@@ -543,6 +545,33 @@ fn directions(estimate: &Estimate<'_>, solution: &Solution, matrix: &DMatrix<f64
         }
     }
     (found, hidden)
+}
+
+/// Terms of friction that no motion tells from other parameters, as far as they are asked for or have a value.
+fn inseparable(arm: &Arm, options: &Options) -> Vec<String> {
+    let asked = |term: Friction| match &options.friction {
+        Some(listed) => listed.contains(&term),
+        None => term == Friction::Offset,
+    };
+    let mut all = Vec::new();
+    for of in &arm.dependent {
+        let (joint, term) = (&arm.joints[of.joint], Friction::ALL[of.term]);
+        let value = joint.friction[of.term].unwrap_or(0.0);
+        let (base, friction) = &of.on;
+        if value == 0.0 && !asked(term) {
+            continue;
+        }
+        let name = |joint: usize, term: usize| format!("{}.friction.{}", arm.joints[joint].name, Friction::ALL[term].key());
+        let others = base.iter().map(|&k| arm.base[k].name.clone()).chain(friction.iter().map(|&(j, k)| name(j, k)));
+        let others: Vec<String> = others.collect();
+        let own = name(of.joint, of.term);
+        all.push(if others.is_empty() {
+            format!("{own} exerts no torque in any motion; it keeps {value}")
+        } else {
+            format!("no motion tells {own} from {}; it keeps {value}, and the others are found beside it", others.join(", "))
+        });
+    }
+    all
 }
 
 /// The reduced data over base parameters and the friction of a session: all other columns are eliminated.

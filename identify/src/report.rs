@@ -161,6 +161,7 @@ pub fn json(
             "condition": number(found.condition),
             "log_det_per_parameter": number(found.log_det_per_parameter),
             "unexcited": unexcited,
+            "inseparable": found.inseparable,
         },
         "written": written.map(|written| {
             let of = &written.consistent;

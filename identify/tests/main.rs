@@ -3,6 +3,7 @@
 mod arms;
 mod codes;
 mod coverage;
+mod friction;
 mod options;
 mod text;
 mod truth;

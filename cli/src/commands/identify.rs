@@ -267,18 +267,25 @@ fn range(of: &Interval) -> [String; 2] {
 }
 
 fn table(arm: &Arm, inputs: &[Input], found: &Identified, validation: &[(String, Judgement)]) -> String {
-    use Align::{Left, Right};
+    use Align::{Left, Point};
     let mut text = format!(
-        "{}: {} rows of samples, cutoff {} Hz, condition {:.0}, {} stretches of time\n\n",
-        arm.name, found.used, found.cutoff, found.condition, found.blocks
+        "{}: {} samples used, cutoff {} Hz, condition {}, {} stretches of time\n\n",
+        arm.name,
+        found.used,
+        short(found.cutoff),
+        short(found.condition),
+        found.blocks
     );
-    let mut base = Table::new([("base parameter", Left), ("value", Right), ("3 sigma", Left), ("is", Left)]);
+    let mut base = Table::new([("base parameter", Left), ("value", Point), ("3 sigma", Left)]);
     for (parameter, value) in arm.base.iter().zip(&found.base) {
         let [value, range] = range(value);
-        base.row([parameter.name.clone(), value, range, parameter.meaning.clone()]);
+        base.row([parameter.name.clone(), value, range]);
     }
-    text += &base.text();
-    let mut friction = Table::new([("joint", Left), ("friction", Left), ("value", Right), ("3 sigma", Left), ("session", Left)]);
+    text += &format!("{}\n", base.text());
+    for parameter in &arm.base {
+        text += &wrapped(&format!("  {} = ", parameter.name), &parameter.meaning);
+    }
+    let mut friction = Table::new([("joint", Left), ("friction", Left), ("value", Point), ("3 sigma", Left), ("session", Left)]);
     for of in &found.friction {
         let [value, range] = range(&of.value);
         let joint = arm.joints[of.joint].name.clone();
@@ -290,7 +297,7 @@ fn table(arm: &Arm, inputs: &[Input], found: &Identified, validation: &[(String,
     }
     text += &format!("\n{}", friction.text());
     if !found.gains.is_empty() {
-        let mut gains = Table::new([("joint", Left), ("gain", Right), ("3 sigma", Left)]);
+        let mut gains = Table::new([("joint", Left), ("gain", Point), ("3 sigma", Left)]);
         for (joint, value) in arm.joints.iter().zip(&found.gains) {
             let [value, range] = range(value);
             gains.row([joint.name.clone(), value, range]);
@@ -298,7 +305,7 @@ fn table(arm: &Arm, inputs: &[Input], found: &Identified, validation: &[(String,
         text += &format!("\n{}", gains.text());
     }
     for (log, ten) in &found.loads {
-        let mut load = Table::new([("load", Left), ("value", Right), ("3 sigma", Left)]);
+        let mut load = Table::new([("load", Left), ("value", Point), ("3 sigma", Left)]);
         for (name, value) in armgen_identify::body::NAMES.iter().zip(ten) {
             if let Some(value) = value {
                 let [value, range] = range(value);
@@ -312,37 +319,59 @@ fn table(arm: &Arm, inputs: &[Input], found: &Identified, validation: &[(String,
     if !validation.is_empty() {
         text += &format!("\n{}", residuals(arm, "validation", validation.iter().map(|(name, of)| (name.as_str(), of))));
     }
+    for words in &found.inseparable {
+        text += &format!("\n{}", wrapped("", words));
+    }
     for (_, words) in &found.unexcited {
-        text += &format!("\nnot shown by the logs: {words}\n");
+        text += &format!("\n{}", wrapped("not shown by the logs: ", words));
     }
     text
 }
 
-fn residuals<'j>(arm: &Arm, what: &str, all: impl Iterator<Item = (&'j str, &'j Judgement)>) -> String {
-    use Align::{Left, Right};
-    let mut table = Table::new([
-        (what, Left),
-        ("joint", Left),
-        ("residual", Right),
-        ("of torque", Right),
-        ("moving", Right),
-        ("delay", Right),
-    ]);
-    let mut contacts = String::new();
-    for (name, of) in all {
-        for (j, joint) in arm.joints.iter().enumerate() {
-            let unit = if joint.slides { "N" } else { "N m" };
-            let delay = format!("{:.1} ms", 1e3 * of.delays[j]);
-            let cells = [format!("{} {unit}", short(of.rms[j])), percent(of.relative[j]), percent(of.moving[j]), delay];
-            table.row([name.to_owned(), joint.name.clone()].into_iter().chain(cells));
-        }
-        let mean = |x: &[f64]| percent(x.iter().sum::<f64>() / x.len() as f64);
-        table.row([name.to_owned(), "mean".into(), String::new(), mean(&of.relative), mean(&of.moving), String::new()]);
-        for contact in of.contacts.iter().filter(|_| what == "validation") {
-            let joints: Vec<&str> = contact.joints.iter().map(|&j| arm.joints[j].name.as_str()).collect();
-            contacts += &format!("{name}: contact from {:.2} s to {:.2} s at {}\n", contact.from, contact.to, joints.join(", "));
+/// Text after a title, in lines of the terminal's width, split between words.
+fn wrapped(title: &str, text: &str) -> String {
+    let mut lines = vec![title.to_owned()];
+    for word in text.split(' ') {
+        let line = lines.last_mut().expect("the first");
+        if line.chars().count() + word.chars().count() < terminal::width() || line.trim().is_empty() {
+            *line += word;
+            *line += " ";
+        } else {
+            lines.push(format!("    {word} "));
         }
     }
-    let gap = if contacts.is_empty() { "" } else { "\n" };
-    format!("{}{gap}{contacts}", table.text())
+    lines.iter().map(|line| format!("{}\n", line.trim_end())).collect()
+}
+
+/// Residuals of logs by joint, each log below its name.
+fn residuals<'j>(arm: &Arm, kind: &str, all: impl Iterator<Item = (&'j str, &'j Judgement)>) -> String {
+    use Align::{Left, Point};
+    let mut text = String::new();
+    let mut delays: Vec<&[f64]> = Vec::new();
+    for (name, of) in all {
+        let delays_are_new = delays.last() != Some(&of.delays.as_slice());
+        delays.push(&of.delays);
+        let mut table = Table::new([
+            ("joint", Left),
+            ("residual", Point),
+            ("", Left),
+            ("of torque", Point),
+            ("moving", Point),
+            ("delay", Point),
+        ]);
+        for (j, joint) in arm.joints.iter().enumerate() {
+            let unit = if joint.slides { "N" } else { "N m" };
+            let delay = if delays_are_new { format!("{:.1} ms", 1e3 * of.delays[j]) } else { String::new() };
+            let [residual, whole, moving] = [short(of.rms[j]), percent(of.relative[j]), percent(of.moving[j])];
+            table.row([joint.name.clone(), residual, unit.to_owned(), whole, moving, delay]);
+        }
+        let mean = |x: &[f64]| percent(x.iter().sum::<f64>() / x.len() as f64);
+        table.row(["mean".into(), String::new(), String::new(), mean(&of.relative), mean(&of.moving), String::new()]);
+        text += &format!("{}{kind} {name}\n{}", if text.is_empty() { "" } else { "\n" }, table.text());
+        for contact in of.contacts.iter().filter(|_| kind == "validation") {
+            let joints: Vec<&str> = contact.joints.iter().map(|&j| arm.joints[j].name.as_str()).collect();
+            text += &format!("  contact from {:.2} s to {:.2} s at {}\n", contact.from, contact.to, joints.join(", "));
+        }
+    }
+    text
 }
