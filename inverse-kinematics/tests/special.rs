@@ -52,4 +52,48 @@ in_both_scalars! {
             }
         }
     }
+
+    /// Slides at joints 1 and 3 at right angles to the axis between them, of random lengths.
+    fn with_two_slides(random: &mut Random) -> Arm {
+        let l: [f64; 7] = std::array::from_fn(|_| random.between(0.05, 0.3));
+        let rows = [(0.0, 0.0, 0.0, RIGHT), (0.0, l[0], l[1], RIGHT), (0.8, 0.0, l[2], RIGHT), (0.0, l[3], l[4], -RIGHT), (0.0, l[5], 0.05, RIGHT), (0.0, l[6], 0.0, 0.0)];
+        Arm::standard(&rows, &[0, 2])
+    }
+
+    /// All solutions on the circle of joint 2, in the arm's order.
+    fn solve_two_slides(arm: &Arm, t: &Frame) -> (Branches<6, 8>, Vec<[[Real; 2]; 6]>) {
+        let (order, links) = arranged::<6>(arm, t, 1, false);
+        let found = two_slides(&links, [1, 5], arm.length());
+        let listed = found.found().iter().map(|branch| in_order(&order, &branch.joints)).collect();
+        (found, listed)
+    }
+
+    /// Where the slides are parallel there is no root without a posture: random poses are certain. Where joints 4 and 6 turn about one axis, the
+    /// postures are found from loops beside.
+    #[test]
+    fn two_slides_lose_no_posture() {
+        let random = &mut Random(2);
+        let (mut doubtful, mut regular) = (0, 0);
+        for _ in 0..10 {
+            let arm = with_two_slides(random);
+            for i in 0..60 {
+                let mut q = if i % 2 == 0 { arm.posture(random) } else { special(&arm, 0.5, random) };
+                if i % 4 == 3 {
+                    q[4] = 2.0 * RIGHT;
+                }
+                let t = arm.at(&q);
+                let (found, listed) = solve_two_slides(&arm, &t);
+                let sure = !found.near && !found.continuum && found.found().iter().all(|branch| !branch.double);
+                assert!(found.count > 0 || !sure, "{q:?}: unreachable");
+                if i % 2 == 0 {
+                    regular += 1;
+                    doubtful += usize::from(!sure);
+                    let values: Vec<_> = q.iter().enumerate().map(|(i, q)| arm.value(i, *q)).collect();
+                    let near = if SINGLE { 5e-2 } else { 1e-5 };
+                    assert!(!sure || listed.iter().any(|other| apart(other, &values) < near), "{q:?}: lost");
+                }
+            }
+        }
+        assert!(doubtful * if SINGLE { 3 } else { 50 } <= regular, "{doubtful} of {regular} random poses are doubtful");
+    }
 }

@@ -147,17 +147,25 @@ impl<const N: usize> Loop<'_, N> {
     fn nearly_double(&self, equations: &Equations<N>, units: Real) -> bool {
         const SECOND_DERIVATIVES: Real = 4.0;
         let mut square = 0.0;
-        for k in 0..N {
+        let mut inverse = [[0.0; N]; N];
+        for (k, column) in inverse.iter_mut().enumerate() {
             let mut unit = *equations;
             unit.right = [0.0; N];
             unit.right[k] = self.length;
-            let (x, _) = solve(&unit);
-            for (x, prismatic) in x.iter().zip(self.prismatic) {
-                let x = if prismatic { x / self.length } else { *x };
-                square += x * x;
+            let (solved, _) = solve(&unit);
+            *column = solved;
+            for (x, prismatic) in column.iter_mut().zip(self.prismatic) {
+                *x = if prismatic { *x / self.length } else { *x };
+                square += *x * *x;
             }
         }
-        !(square * SECOND_DERIVATIVES * units * UNIT_ROUNDOFF < 0.5)
+        let is_double = |square: Real| !(square * SECOND_DERIVATIVES * units * UNIT_ROUNDOFF < 0.5);
+        is_double(square) && (!self.slides_far() || is_double(about_best_point(&inverse)))
+    }
+
+    /// Whether slides may take parts of the arm far from where the loop is closed.
+    fn slides_far(&self) -> bool {
+        N > 3 && self.prismatic.iter().any(|slides| *slides)
     }
 
     /// The least residual that damped steps (Levenberg, Marquardt) reach from `joints` in 30 of them: how far a pose out of reach is. `damping`, of
@@ -357,6 +365,40 @@ fn solve<const N: usize>(equations: &Equations<N>) -> ([Real; N], Real) {
     (x, smallest)
 }
 
+/// The sum of the squares of an inverse Jacobian's entries, by columns, with turns about the point that makes it least. About a point far away a turn
+/// is mostly a displacement.
+fn about_best_point<const N: usize>(columns: &[[Real; N]; N]) -> Real {
+    let mut normal = Equations { rows: [[0.0; 3]; 3], right: [0.0; 3] };
+    let joint = |i: usize, first: usize| {
+        let mut v = [0.0; 3];
+        for (v, column) in v.iter_mut().zip(columns.iter().skip(first)) {
+            *v = column.get(i).copied().unwrap_or(0.0);
+        }
+        v
+    };
+    // |turn + along × d|² of all joints is least.
+    for i in 0..N {
+        let (along, turn) = (joint(i, 0), joint(i, 3));
+        let moment = cross(turn, along);
+        for j in 0..3 {
+            normal.rows[j][j] += dot(along, along);
+            for k in 0..3 {
+                normal.rows[j][k] -= along[j] * along[k];
+            }
+            normal.right[j] -= moment[j];
+        }
+    }
+    let (d, _) = solve(&normal);
+    let mut sum = 0.0;
+    for i in 0..N {
+        let (along, turn) = (joint(i, 0), joint(i, 3));
+        let moved = cross(along, d);
+        let rest = [turn[0] + moved[0], turn[1] + moved[1], turn[2] + moved[2]];
+        sum += dot(along, along) + dot(rest, rest);
+    }
+    sum
+}
+
 /// The equations of least squares, (K'K) x = K'e for the rows (K, e).
 fn least_squares<const N: usize>(of: &Equations<N>) -> Equations<N> {
     let mut normal = Equations { rows: [[0.0; N]; N], right: [0.0; N] };
@@ -380,6 +422,32 @@ fn apart<const J: usize, const K: usize>(x: &[[Real; 2]; J], y: &[[Real; 2]; J],
         largest = largest.max(((x[0] - y[0]).abs() + (x[1] - y[1]).abs()) / unit);
     }
     largest
+}
+
+/// By how much a loop is moved to find solutions that are hidden at special poses: rad and lengths of the arm. Above the root of rounding, to which
+/// meeting roots are known; small enough for Newton's method to come back.
+const BESIDE: Real = if UNIT_ROUNDOFF < 1e-10 { 1e-5 } else { 4e-3 };
+
+/// The same the other way, further.
+const FURTHER_BESIDE: Real = if UNIT_ROUNDOFF < 1e-10 { -3e-4 } else { -1e-2 };
+
+/// A displacement by about as much, in no particular direction.
+fn moved_by(x: Real) -> Frame {
+    let (ca, sa) = small_turn(0.7 * x);
+    let (cb, sb) = small_turn(x);
+    let a = [[ca, -sa, 0.0, 0.9 * x], [sa, ca, 0.0, -0.5 * x], [0.0, 0.0, 1.0, 0.6 * x]];
+    let b = [[cb, 0.0, sb, 0.0], [0.0, 1.0, 0.0, 0.0], [-sb, 0.0, cb, 0.0]];
+    compose(&a, &compose(&b, &[[1.0, 0.0, 0.0, 0.0], [0.0, ca, -sa, 0.0], [0.0, sa, ca, 0.0]]))
+}
+
+/// What Newton's method finds from a solution of a loop beside, or damped steps where the place is singular.
+fn close_from_beside(closing: &Loop<6>, joints: &[[Real; 2]; 6]) -> Closed<6> {
+    let closed = closing.close(joints, false);
+    if closed.residual <= CLOSED * closing.length {
+        closed
+    } else {
+        closing.nearest(joints, UNIT_ROUNDOFF)
+    }
 }
 
 /// Adds a solution unless it is known.

@@ -13,7 +13,7 @@ pub fn general_arm(arrangements: &[Arrangement<6>; 2], t: &Frame, length: Real) 
         join(&mut found, first, branch, length);
     }
     found.miss = one.found.miss;
-    if one.complete {
+    if one.complete && found.count > 0 {
         return found;
     }
     let other = determinant_on_circle(&second.links_at(t), second.prismatic, length);
@@ -22,12 +22,39 @@ pub fn general_arm(arrangements: &[Arrangement<6>; 2], t: &Frame, length: Real) 
     }
     found.miss = found.miss.min(other.found.miss);
     found.continuum = one.free && other.free;
-    // Either the second is sure of itself and knows all that the first has found, or both found the same, an even number, double ones aside.
+    // The second is sure of itself and knows all that the first has found, or both found the same, an even number, double ones aside.
     let single = found.found().iter().filter(|branch| !branch.double).count();
     let agreed = one.found.count == found.count && other.found.count == found.count && single % 2 == 0;
-    let settled = other.complete && other.found.count == found.count || agreed && !one.free && !other.free;
-    found.near = !settled;
+    let settled = one.complete || other.complete && other.found.count == found.count || agreed && !one.free && !other.free;
+    found.near = !settled || found.miss <= 64.0 * CLOSED * length;
+    add_from_beside(&mut found, first, t, length);
     found
+}
+
+/// Adds what closes the loop from the solutions at two poses beside it. Where solutions share a root of the determinant, though they are regular,
+/// beside it each has a root of its own.
+#[cold]
+#[inline(never)]
+fn add_from_beside(found: &mut Branches<6, 16>, way: &Arrangement<6>, t: &Frame, length: Real) {
+    let links = way.links_at(t);
+    let closing = Loop { links: &links, prismatic: way.prismatic, target: [0.0; 3], length };
+    for by in [BESIDE, FURTHER_BESIDE] {
+        let mut moved = moved_by(by);
+        for row in &mut moved {
+            row[3] *= length;
+        }
+        let beside = determinant_on_circle(&way.links_at(&compose(t, &moved)), way.prismatic, length);
+        for branch in beside.found.found() {
+            let closed = close_from_beside(&closing, &branch.joints);
+            if closed.residual <= CLOSED * length {
+                let known = found.count;
+                let mut other = *branch;
+                (other.joints, other.double) = (closed.joints, closed.double);
+                join(found, way, &other, length);
+                found.near |= found.count > known;
+            }
+        }
+    }
 }
 
 /// Adds a solution of an arrangement's loop, in the arm's order, unless it is known.

@@ -4,6 +4,9 @@
 // if what is left to slide is in the plane of their directions: f = det(na, nb, r) = 0. f is A + B w in the ring of numbers a + b w, w² = W, whatever
 // the sign of W; the product of both branches, A² - B² W, times the squared sine h² between axes t1 and t3 (the denominator of t1 and t3) is a
 // trigonometric polynomial of degree 4 in the given joint: at most 8 solutions. Found by sampling for every place of the two joints.
+//
+// Slides on both sides of a revolute joint, both at right angles to its axis k, have na × nb = k sin(t): f has a factor that vanishes where the slides
+// are parallel, without a posture there. nb is replaced by k × na, which leaves that factor out.
 
 /// a + b w.
 #[derive(Clone, Copy)]
@@ -40,6 +43,10 @@ impl WithRoot {
 struct TwoSlides<'a> {
     links: &'a [Frame; 6],
     slides: [usize; 2],
+    /// The place of the revolute joint between the slides, both at right angles to its axis; 6 if there is none.
+    across: usize,
+    /// k × na there.
+    beside: [WithRoot; 3],
     /// (cos, sin) of alpha and beta, and the rotations before t1 and after t3.
     alpha: [Real; 2],
     beta: [Real; 2],
@@ -70,11 +77,24 @@ impl<'a> TwoSlides<'a> {
             }
         }
         let [before, a, b, after] = parts;
-        TwoSlides { links, slides, alpha: [a[2][2], a[2][1]], beta: [b[2][2], b[2][1]], before, after }
+        let [s, t] = slides;
+        // The axes of neighbours are at a right angle.
+        let right = |place: usize| links.get(place).map_or(1.0, |link| link[2][2].abs()) == 0.0;
+        let (mut across, mut na) = (6, [0.0; 3]);
+        if s + 2 == t && right(s) && right(s + 1) {
+            across = s + 1;
+            na = links.get(s).map_or([0.0; 3], |link| [link[2][0], link[2][1], link[2][2]]);
+        } else if s == 1 && t == 5 && right(0) && right(5) {
+            across = 0;
+            na = column(&links[0], 2);
+        }
+        let beside = [WithRoot { a: -na[1], b: 0.0 }, WithRoot { a: na[0], b: 0.0 }, WithRoot { a: 0.0, b: 0.0 }];
+        TwoSlides { links, slides, across, beside, alpha: [a[2][2], a[2][1]], beta: [b[2][2], b[2][1]], before, after }
     }
 
-    /// What is left to slide, and the directions of the slides, as they are seen from behind the first joint.
-    fn displacements(&self, turns: &[[WithRoot; 2]; 3], square: Real) -> [[WithRoot; 3]; 3] {
+    /// What is left to slide, and the directions of the slides, as they are seen from behind the first joint. `apart`: k × na for nb, if there is
+    /// such a joint.
+    fn displacements(&self, turns: &[[WithRoot; 2]; 3], square: Real, apart: bool) -> [[WithRoot; 3]; 3] {
         const ZERO: WithRoot = WithRoot { a: 0.0, b: 0.0 };
         let mut vectors = [[ZERO; 3]; 3];
         let mut turns = turns.iter().rev();
@@ -110,7 +130,13 @@ impl<'a> TwoSlides<'a> {
                         z,
                     ];
                 }
+                if apart && i == self.across {
+                    vectors[2] = self.beside;
+                }
             }
+        }
+        if apart && self.across == 0 {
+            vectors[2] = self.beside;
         }
         vectors
     }
@@ -129,7 +155,7 @@ impl<'a> TwoSlides<'a> {
         let t1 = [x.by(g[0][2]).plus(y.by(g[1][2])).by(over), x.by(g[1][2]).minus(y.by(g[0][2])).by(over)];
         let t3 = [u.by(g[2][0]).plus(v.by(g[2][1])).by(over), v.by(g[2][0]).minus(u.by(g[2][1])).by(over)];
         let turns = [t1, [WithRoot { a: c2, b: 0.0 }, WithRoot { a: 0.0, b: 1.0 }], t3];
-        let [r, a, b] = self.displacements(&turns, square);
+        let [r, a, b] = self.displacements(&turns, square, true);
         let minor = |i: usize, j: usize| a[i].times(b[j], square).minus(a[j].times(b[i], square));
         let f = r[0].times(minor(1, 2), square).plus(r[1].times(minor(2, 0), square)).plus(r[2].times(minor(0, 1), square));
         AtGiven { turns, square, sine, f }
@@ -154,12 +180,14 @@ impl<'a> TwoSlides<'a> {
             let n = length(c, s);
             *turned = if n > 0.0 { [c / n, s / n] } else { [1.0, 0.0] };
         }
-        let [r, a, b] = self.displacements(&at.turns, at.square);
+        let [r, a, b] = self.displacements(&at.turns, at.square, false);
         let real = |v: [WithRoot; 3]| [v[0].at(w), v[1].at(w), v[2].at(w)];
         let (r, a, b) = (real(r), real(a), real(b));
         let m = cross(a, b);
-        let over = 1.0 / dot(m, m);
-        let mut lengths = [dot(cross(b, r), m) * over, dot(cross(r, a), m) * over].into_iter();
+        // Of parallel slides the first takes all.
+        let parallel = dot(m, m) <= ROUNDING * ROUNDING;
+        let over = if parallel { 0.0 } else { 1.0 / dot(m, m) };
+        let mut lengths = [if parallel { dot(a, r) } else { dot(cross(b, r), m) * over }, dot(cross(r, a), m) * over].into_iter();
         let mut turned = turned.into_iter();
         let mut joints = [given; 6];
         for (i, joint) in joints.iter_mut().enumerate().skip(1) {
@@ -183,12 +211,55 @@ impl<'a> TwoSlides<'a> {
 /// - `near`: the number of solutions is not that of the roots, or rounding decides. The polynomial vanishes: `continuum`.
 /// - Without solutions `miss` is the residual of a least-squares posture (the links' unit, angles times `length`).
 pub fn two_slides(links: &[Frame; 6], slides: [usize; 2], length: Real) -> Branches<6, 8> {
-    let mut found = Branches::new();
     let mut unit = *links;
     for row in unit.iter_mut().flatten() {
         row[3] /= length;
     }
-    let arm = TwoSlides::new(&unit, slides);
+    let mut prismatic = [false; 6];
+    for (i, kind) in prismatic.iter_mut().enumerate() {
+        *kind = slides.contains(&i);
+    }
+    let mut found = slides_at(&unit, slides, &prismatic);
+    if found.near || found.count == 0 && !found.continuum {
+        slides_from_beside(&mut found, &unit, slides, &prismatic);
+    }
+    for branch in &mut found.all {
+        for (value, prismatic) in branch.joints.iter_mut().zip(prismatic) {
+            if prismatic {
+                value[0] *= length;
+            }
+        }
+    }
+    found.miss *= length;
+    found
+}
+
+/// Adds what closes the loop from the solutions of two loops beside it. Where t1 and t3 turn about one axis the product has a double root,
+/// whatever t1 is, though the postures there are regular: beside it each has a root of its own.
+#[cold]
+#[inline(never)]
+fn slides_from_beside(found: &mut Branches<6, 8>, unit: &[Frame; 6], slides: [usize; 2], prismatic: &[bool; 6]) {
+    let closing = Loop { links: unit, prismatic: *prismatic, target: [0.0; 3], length: 1.0 };
+    for by in [BESIDE, FURTHER_BESIDE] {
+        let mut beside = *unit;
+        // Not between the three turns, nor beside a joint that both slides are at right angles to.
+        let place = if slides[1] == 5 && slides[0] == 1 { 4 } else { 5 };
+        beside[place] = compose(&beside[place], &moved_by(by));
+        for branch in slides_at(&beside, slides, prismatic).found() {
+            let closed = close_from_beside(&closing, &branch.joints);
+            if closed.residual <= CLOSED {
+                let known = found.count;
+                merge(found, &closing, &closed, false);
+                found.near |= found.count > known;
+            }
+        }
+    }
+}
+
+/// Two slides in units of the arm's length.
+fn slides_at(unit: &[Frame; 6], slides: [usize; 2], prismatic: &[bool; 6]) -> Branches<6, 8> {
+    let mut found = Branches::new();
+    let arm = TwoSlides::new(unit, slides);
     let mut samples = [0.0; 12];
     let mut largest: Real = 0.0;
     for (j, sample) in samples.iter_mut().enumerate() {
@@ -210,11 +281,7 @@ pub fn two_slides(links: &[Frame; 6], slides: [usize; 2], length: Real) -> Branc
         }
         values
     });
-    let mut prismatic = [false; 6];
-    for (i, kind) in prismatic.iter_mut().enumerate() {
-        *kind = slides.contains(&i);
-    }
-    let closing = Loop { links: &unit, prismatic, target: [0.0; 3], length: 1.0 };
+    let closing = Loop { links: unit, prismatic: *prismatic, target: [0.0; 3], length: 1.0 };
     found.continuum = roots.free;
     for root in roots.all.iter().take(roots.count) {
         let given = [root.c, root.s];
@@ -232,17 +299,20 @@ pub fn two_slides(links: &[Frame; 6], slides: [usize; 2], length: Real) -> Branc
         }
     }
     let distinct = found.count;
+    let mut met = true;
     for root in roots.shallow.iter().take(roots.shallow_count) {
         let given = [root.c, root.s];
         let at = arm.at(given);
         let w = sqrt(at.square.max(0.0));
         let w = if at.f.at(w).abs() <= at.f.at(-w).abs() { w } else { -w };
         let closed = closing.nearest(&arm.joints(given, &at, w), UNIT_ROUNDOFF);
-        if closed.residual <= 2.0 * ROUNDING && closed.double {
+        let double = closed.residual <= 2.0 * ROUNDING && closed.double;
+        if double {
             merge(&mut found, &closing, &closed, true);
         }
+        met &= double;
     }
-    found.near = !roots.free && (roots.near || distinct != roots.count);
+    found.near = !roots.free && (roots.near || distinct != roots.count || !met);
     if found.count == 0 && !found.continuum {
         let (mut place, mut least) = (0, Real::INFINITY);
         for (j, sample) in samples.iter().enumerate() {
@@ -253,13 +323,11 @@ pub fn two_slides(links: &[Frame; 6], slides: [usize; 2], length: Real) -> Branc
         let given = [cosine_of_15_degrees(2 * place), cosine_of_15_degrees(2 * place + 18)];
         let at = arm.at(given);
         let joints = arm.joints(given, &at, sqrt(at.square.max(0.0)));
-        found.missed(closing.nearest(&joints, 1e-2).residual * length);
-    }
-    for branch in &mut found.all {
-        for (value, prismatic) in branch.joints.iter_mut().zip(prismatic) {
-            if prismatic {
-                value[0] *= length;
-            }
+        let nearest = closing.nearest(&joints, 1e-2);
+        found.missed(nearest.residual);
+        if nearest.residual <= 64.0 * CLOSED {
+            merge(&mut found, &closing, &nearest, true);
+            found.near = true;
         }
     }
     found
