@@ -92,6 +92,14 @@ impl<'a> TwoSlides<'a> {
         TwoSlides { links, slides, across, beside, alpha: [a[2][2], a[2][1]], beta: [b[2][2], b[2][1]], before, after }
     }
 
+    /// Whether axes t1 and t3 are parallel at some angle of the first joint, to the fourth root of u: the product has a double root there.
+    fn axes_meet(&self) -> bool {
+        let [x, y, _] = self.before;
+        let axis = self.after[2];
+        let most = (axis[2] * self.before[2][2]).abs() + length(axis[0], axis[1]) * length(x[2], y[2]);
+        1.0 - most <= sqrt(UNIT_ROUNDOFF)
+    }
+
     /// What is left to slide, and the directions of the slides, as they are seen from behind the first joint. `apart`: k × na for nb, if there is
     /// such a joint.
     fn displacements(&self, turns: &[[WithRoot; 2]; 3], square: Real, apart: bool) -> [[WithRoot; 3]; 3] {
@@ -312,7 +320,7 @@ fn slides_at(unit: &[Frame; 6], slides: [usize; 2], prismatic: &[bool; 6]) -> Br
         }
         met &= double;
     }
-    found.near = !roots.free && (roots.near || distinct != roots.count || !met);
+    found.near = !roots.free && (roots.near || distinct != roots.count || !met || arm.axes_meet());
     if found.count == 0 && !found.continuum {
         let (mut place, mut least) = (0, Real::INFINITY);
         for (j, sample) in samples.iter().enumerate() {
