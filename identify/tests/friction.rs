@@ -69,7 +69,7 @@ fn a_vertical_slide_keeps_its_offset_and_shows_its_mass() {
 
 /// Terms that noise makes seem to be there have no part in the model, and those that are there are found.
 #[test]
-#[ignore = "wide: identifies ten logs"]
+#[ignore = "wide"]
 fn terms_are_found_where_they_are_and_nowhere_else() {
     let with = ELBOW
         .replace("offset: 0.4", "offset: 0.4, stribeck: {torque: 3, velocity: 0.08}")
