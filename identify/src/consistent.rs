@@ -30,6 +30,8 @@ pub struct Consistent {
     pub unconstrained: f64,
     /// The weight of D.
     pub mu: f64,
+    /// The weight of the barrier at the end.
+    pub nu: f64,
     /// Steps of Newton's method.
     pub steps: usize,
 }
@@ -86,7 +88,9 @@ pub fn references(arm: &Arm) -> Vec<Ten> {
     arm.links.iter().map(reference).collect()
 }
 
-struct Problem {
+/// What is minimised, in floats.
+#[derive(Clone, Debug)]
+pub(crate) struct Problem {
     /// Rows of z by columns of x.
     map: DMatrix<f64>,
     h: DMatrix<f64>,
@@ -174,6 +178,21 @@ impl Problem {
         Some(Value { phi, gradient, hessian })
     }
 
+    /// z of the least f.
+    pub(crate) fn least(&self) -> &DVector<f64> {
+        &self.least
+    }
+
+    /// The least f.
+    pub(crate) fn unconstrained(&self) -> f64 {
+        self.unconstrained
+    }
+
+    /// The Hessian of phi at a point inside.
+    pub(crate) fn hessian(&self, x: &DVector<f64>, mu: f64, nu: f64) -> Option<DMatrix<f64>> {
+        self.value(x, mu, nu).map(|value| value.hessian)
+    }
+
     /// Newton's method from a point inside; the number of steps.
     fn minimise(&self, x: &mut DVector<f64>, mu: f64, nu: f64) -> usize {
         for step in 0..80 {
@@ -208,8 +227,8 @@ impl Problem {
     }
 }
 
-/// The consistent parameters that explain the reduced data.
-pub fn consistent(arm: &Arm, reduced: &Reduced) -> Consistent {
+/// What is minimised for the reduced data.
+pub(crate) fn problem(arm: &Arm, reduced: &Reduced) -> Problem {
     let (links, rotors, friction) = (arm.dof(), arm.rotors.len(), reduced.friction.len());
     let (base, n) = (arm.base.len(), 10 * arm.dof() + arm.rotors.len() + reduced.friction.len());
     let standard = 10 * links + rotors;
@@ -229,19 +248,28 @@ pub fn consistent(arm: &Arm, reduced: &Reduced) -> Consistent {
     let inverse = |ten: &Ten| body::pseudo_inertia(ten).try_inverse().unwrap_or_else(Matrix4::identity);
     let given = arm.rotors.iter().enumerate().map(|(k, &joint)| (10 * links + k, arm.joints[joint].rotor));
     let bounded = reduced.friction.iter().enumerate().filter(|(_, (_, term))| term.is_not_negative());
-    let problem = Problem {
+    Problem {
         unconstrained: 0.5 * reduced.gram.squares(&least),
         h: reduced.gram.h.clone(),
         rest,
         links,
         basis: std::array::from_fn(unit),
         inverses: references.iter().map(inverse).collect(),
-        rotors: given.clone().filter(|(_, inertia)| *inertia > 0.0).collect(),
+        rotors: given.filter(|(_, inertia)| *inertia > 0.0).collect(),
         bounded: (10 * links..standard).chain(bounded.map(|(k, _)| standard + k)).collect(),
         map,
         offset,
         least,
-    };
+    }
+}
+
+/// The consistent parameters that explain the reduced data.
+pub fn consistent(arm: &Arm, reduced: &Reduced) -> Consistent {
+    let problem = problem(arm, reduced);
+    let (links, base, friction) = (arm.dof(), arm.base.len(), reduced.friction.len());
+    let (standard, n) = (arm.standard.len(), arm.standard.len() + friction);
+    let references = references(arm);
+    let given = arm.rotors.iter().enumerate().map(|(k, &joint)| (10 * links + k, arm.joints[joint].rotor));
     let mut x = DVector::zeros(n);
     for (link, ten) in references.iter().enumerate() {
         x.rows_mut(10 * link, 10).copy_from_slice(ten);
@@ -285,6 +313,7 @@ pub fn consistent(arm: &Arm, reduced: &Reduced) -> Consistent {
         objective: problem.f(&x),
         unconstrained: problem.unconstrained,
         mu,
+        nu: least_nu,
         steps,
     }
 }

@@ -8,8 +8,10 @@
 
 pub mod arm;
 pub mod body;
+pub mod certificate;
 pub mod consistent;
 pub mod estimate;
+pub mod exact;
 pub mod finding;
 pub mod fit;
 pub mod identify;

@@ -114,6 +114,8 @@ struct Target<'d> {
 }
 
 struct Plan<'d> {
+    /// Digits beyond those that standard errors ask for.
+    finer: usize,
     source: &'d Source,
     description: &'d RobotDescription,
     changes: Vec<Change>,
@@ -331,7 +333,10 @@ fn friction<'d>(
             new,
             remark,
             // A term that vanishes must not be rounded to the digits of 0.
-            power: power_of_sigma(new.abs().max(arm.joints[i].friction[term as usize].unwrap_or(0.0).abs()) / unit, sigma / unit),
+            power: power_of_sigma(
+                new.abs().max(arm.joints[i].friction[term as usize].unwrap_or(0.0).abs()) / unit,
+                sigma / unit * 10f64.powi(-(plan.finer as i32)),
+            ),
             unit,
         });
     }
@@ -355,7 +360,7 @@ fn is_found(found: &Identified, joint: usize) -> bool {
 }
 
 /// The leading minors of diag(m, S), exactly.
-fn minors(manipulator: &Manipulator, given: &Body) -> [Number; 4] {
+pub(crate) fn minors(manipulator: &Manipulator, given: &Body) -> [Number; 4] {
     let of = |value: &Polynomial| nominal(manipulator, value);
     let [xx, xy, yy, xz, yz, zz] = given.inertia.each_ref().map(of);
     let half = Number::from(Rational::from_parts(1.into(), 2u8.into()));
@@ -392,17 +397,37 @@ fn pivots(manipulator: &Manipulator) -> Result<Vec<[f64; 4]>, usize> {
 ///
 /// The reason why the text cannot have them, with its place.
 pub fn write(source: &Source, arm: &Arm, found: &Identified, consistent: &Consistent) -> Result<Written, String> {
+    write_finer(source, arm, found, consistent, 0)
+}
+
+/// The same with so many more digits than rounding far below the standard errors asks for.
+///
+/// # Errors
+///
+/// The reason why the text cannot have them, with its place.
+pub fn write_finer(
+    source: &Source,
+    arm: &Arm,
+    found: &Identified,
+    consistent: &Consistent,
+    finer: usize,
+) -> Result<Written, String> {
     let at = |span: Span, text: &str| format!("{}:{}: {text}", source.name(), source.place(span.start));
     let (description, _) = RobotDescription::parse(source);
     let description = description.ok_or_else(|| at(Span::default(), "no description"))?;
     let exact = consistent.base(arm);
     let mut reason = String::new();
+    let mut more = finer;
     for digits in DIGITS {
-        let mut planned = Plan { source, description: &description, changes: Vec::new(), notes: Vec::new() };
+        let mut planned = Plan { finer, source, description: &description, changes: Vec::new(), notes: Vec::new() };
         let mut written = plan(&mut planned, &description, arm, found, consistent, digits);
         let base = written.consistent.base(arm);
         let moved = |k: usize| (base[k] - exact[k]).abs() > (MOVED * found.base[k].sigma).max(1e-10 * exact.amax());
         if digits < *DIGITS.end() && (0..base.len()).any(moved) {
+            continue;
+        }
+        if digits < *DIGITS.end() && more > 0 {
+            more -= 1;
             continue;
         }
         // Values with the same path: a name that several joints share is no single use, so there are none.

@@ -1,6 +1,7 @@
 //! Logs of simulated arms, read and identified.
 
 mod arms;
+mod certificate;
 mod codes;
 mod coverage;
 mod friction;

@@ -160,6 +160,8 @@ const IDENTIFY: Layers = &[
     ("identify", &["arm", "body", "estimate", "finding", "fit", "judge", "log", "options", "prepare", "signal", "suspect"]),
     ("consistent", &["arm", "body", "fit", "identify"]),
     ("written", &["arm", "body", "consistent", "identify", "prepare"]),
+    ("exact", &[]),
+    ("certificate", &["arm", "consistent", "exact", "identify", "prepare", "written"]),
     ("report", &["arm", "body", "finding", "identify", "judge", "written"]),
 ];
 

@@ -6,6 +6,7 @@ use std::path::{Path, PathBuf};
 
 use armgen_codegen::kinds::Scalar;
 use armgen_identify::arm::Arm;
+use armgen_identify::certificate::{write_certified, Proved, LARGEST_GAP};
 use armgen_identify::consistent::consistent;
 use armgen_identify::finding::{Code, Finding, Findings};
 use armgen_identify::identify::{identify, Identified, Input, Interval};
@@ -14,7 +15,7 @@ use armgen_identify::log::{self, Format, Log};
 use armgen_identify::options::{self, Load, LogOptions, Options};
 use armgen_identify::prepare::Friction;
 use armgen_identify::report;
-use armgen_identify::written::{write, Written};
+use armgen_identify::written::Written;
 use serde_json::json;
 
 use super::verify::with_spinner;
@@ -87,14 +88,15 @@ fn run_or_exit_code(file: &Path, asked: &Asked) -> Result<u8, u8> {
         None => None,
         Some(_) => {
             let bodies = consistent(&arm, &found.reduced);
-            let written = with_spinner("writing", || write(&source, &arm, &found, &bodies));
-            Some(written.map_err(|reason| {
+            let certified = || write_certified(&source, chosen.link_side, &arm, &found, &bodies);
+            Some(with_spinner("writing", certified).map_err(|reason| {
                 terminal::error(&reason);
                 FAULTY
             })?)
         }
     };
-    let model = model(&arm, &found, written.as_ref());
+    let of_written = written.as_ref().map(|(written, ..)| written);
+    let model = model(&arm, &found, of_written);
     let mut validation = Vec::new();
     for log in held_out {
         let log = in_torques(&arm, log, &found.gains)?;
@@ -103,17 +105,26 @@ fn run_or_exit_code(file: &Path, asked: &Asked) -> Result<u8, u8> {
     terminal::diagnose(&findings.render());
     let mut code = terminal::print(&table(&arm, &inputs, &found, &validation));
     if let Some(folder) = &asked.report {
-        let report = report::json(&arm, &inputs, &found, written.as_ref(), &validation, &findings);
+        let report = report::json(&arm, &inputs, &found, of_written, &validation, &findings);
         write_report(folder, &report)?;
+        if let Some((_, certificate, _)) = &written {
+            write_in(folder, "certificate.json", certificate)?;
+        }
     }
-    if let (Some(out), Some(written)) = (&asked.out, &written) {
+    if let (Some(out), Some((written, _, proved))) = (&asked.out, &written) {
         let read = [Some(file), asked.options.as_deref()].into_iter().flatten().chain(asked.logs.iter().map(PathBuf::as_path));
         let wrote = output::write_other(read.map(|path| (path, "read by this command")), out, &with_mark_of(file, &written.text));
         if wrote != DONE {
             return Err(wrote);
         }
         written.notes.iter().for_each(|note| terminal::note(note));
-        code = code.max(terminal::print(&told(out, written)));
+        code = code.max(terminal::print(&told(out, written, proved)));
+        if proved.gap.as_ref().is_ok_and(|gap| *gap > LARGEST_GAP) {
+            terminal::error(&format!(
+                "the proved gap is above {LARGEST_GAP:?}: the numbers may be those of no least sum of squares"
+            ));
+            return Ok(FAULTY);
+        }
     }
     if code == DONE && !is_shown {
         terminal::error("the logs do not show all parameters: with `--accept-unexcited` those keep the values of the file");
@@ -129,17 +140,26 @@ fn with_mark_of(file: &Path, text: &str) -> String {
     format!("{}{text}", if has_mark { "\u{feff}" } else { "" })
 }
 
-/// What was written, and what consistency costs.
-fn told(out: &Path, written: &Written) -> String {
+/// What was written, what is proved of it, and what consistency costs.
+fn told(out: &Path, written: &Written, proved: &Proved) -> String {
     let of = &written.consistent;
     format!(
-        "\n{}: {} new numbers, of bodies with {} digits; every body is positive definite, exactly\n\
-         the sum of squares is {} above its least value\n",
+        "\n{}: {} new numbers, of bodies with {} digits\n{}the sum of squares is {} above its least value\n",
         out.display(),
         written.changed,
         written.digits,
+        proofs(proved),
         percent(of.objective / of.unconstrained - 1.0),
     )
+}
+
+/// What a certificate proves, in lines.
+pub(super) fn proofs(proved: &Proved) -> String {
+    let optimal = match &proved.gap {
+        Ok(gap) => format!("proved: no other bodies and friction are better by more than {gap:?} of the objective"),
+        Err(reason) => format!("not proved: that these numbers are optimal ({reason})"),
+    };
+    format!("proved: all {} bodies are positive definite\n{}", proved.bodies, wrapped("", &optimal))
 }
 
 fn named(path: &Path) -> LogOptions {
@@ -245,9 +265,13 @@ fn judged(arm: &Arm, logs: Vec<Log>, asked: &Asked, findings: &Findings) -> Resu
 }
 
 fn write_report(folder: &Path, report: &serde_json::Value) -> Result<(), u8> {
-    let path = folder.join("report.json");
     let text = serde_json::to_string_pretty(report).expect("strings and numbers always have a JSON form") + "\n";
-    output::write(&path, &text).map_err(|error| {
+    write_in(folder, "report.json", &text)
+}
+
+fn write_in(folder: &Path, name: &str, text: &str) -> Result<(), u8> {
+    let path = folder.join(name);
+    output::write(&path, text).map_err(|error| {
         terminal::error(&format!("cannot write {}: {error}", path.display()));
         UNREADABLE
     })

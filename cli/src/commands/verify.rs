@@ -1,4 +1,4 @@
-//! `armgen verify`: whether a module equals the equations of its description.
+//! `armgen verify`: whether a module equals the equations of its description, or identified numbers are those that a certificate proves.
 
 use std::ffi::OsStr;
 use std::path::{Path, PathBuf};
@@ -7,6 +7,7 @@ use std::time::Duration;
 
 use armgen_codegen::emit::{camel, Language, Origin};
 use armgen_codegen::source::Source;
+use armgen_identify::certificate as identification;
 use armgen_verify::certificate::Certificate;
 use armgen_verify::inverse_kinematics;
 use armgen_verify::reader::{matlab, options_of, ModuleText};
@@ -36,6 +37,9 @@ fn verified(description: &Path, module: &Path, language: Option<Language>) -> Re
     let named = module.file_name().is_none().then(|| module.canonicalize().ok()).flatten();
     let module = named.as_deref().unwrap_or(module);
     let text = if module.is_dir() { input::package(module) } else { input::written(module) }?;
+    if identification::is_one(text.text()) {
+        return identified(&source, module, text.text());
+    }
     if let Some(with) = companions::goes_with(module, text.text()) {
         terminal::error(&format!("{} goes with {with}: verify that one", module.display()));
         return Err(FAULTY);
@@ -92,6 +96,18 @@ fn verified(description: &Path, module: &Path, language: Option<Language>) -> Re
         "{module} {why}; `armgen generate {description}{options} --out {module} --verify` writes module and certificate again"
     ));
     Err(FAULTY)
+}
+
+/// A certificate of identified numbers.
+fn identified(source: &Source, certificate: &Path, text: &str) -> Result<u8, u8> {
+    input::manipulator(source, armgen_codegen::kinds::Scalar::F64, input::Warnings::Counted)?;
+    match with_spinner("verifying", || identification::check(source, text)) {
+        Ok(proved) => Ok(terminal::print(&format!("{}verified\n", super::identify::proofs(&proved)))),
+        Err(fault) => {
+            terminal::error(&format!("{}: {fault}", certificate.display()));
+            Err(FAULTY)
+        }
+    }
 }
 
 /// The given language, or the language of the extension. Without either there is an error: advice about a guess would mislead.
