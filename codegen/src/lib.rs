@@ -205,9 +205,15 @@ pub fn generate(source: &Source, options: &Options) -> (Option<Generated>, Diagn
             return (None, diagnostics);
         }
     };
+    (Some(printed(source, model.manipulator, module)), diagnostics)
+}
+
+/// The texts of programs: those of the arm of a description.
+#[doc(hidden)]
+pub fn printed(source: &Source, manipulator: Manipulator, module: Module) -> Generated {
     let origin = Origin::of(source);
     let text = emit::rust::Text::of(&module);
-    let generated = Generated {
+    Generated {
         module: text.documented(&module, &origin, &Notes::default()),
         text,
         runtime: emit::rust::print_runtime(&module, &origin),
@@ -217,8 +223,7 @@ pub fn generate(source: &Source, options: &Options) -> (Option<Generated>, Diagn
         program: module,
         origin,
         notes: Notes::default(),
-        manipulator: model.manipulator,
+        manipulator,
         construction: OnceLock::new(),
-    };
-    (Some(generated), diagnostics)
+    }
 }

@@ -94,7 +94,7 @@ pub fn page(source: &Source, runs: &[Run]) -> Result<(Option<String>, Diagnostic
 }
 
 /// The page in the first of two steps: everything but the equations and the table of costs, which take most of the time.
-/// Its script waits for a message from the window around it with the result of [`rest`]. `nonce` marks its script and its style for the
+/// Its script waits for a message from the window around it, what [`rest`] gives. `nonce` marks its script and its style for the
 /// policy of that window.
 pub fn picture(source: &Source, nonce: &str) -> (Option<String>, Diagnostics) {
     let (valid, mut diagnostics) = validate::read_for(source, Scalar::F64);
@@ -107,14 +107,11 @@ pub fn picture(source: &Source, nonce: &str) -> (Option<String>, Diagnostics) {
     (Some(page), diagnostics)
 }
 
-/// The second step: the content of the sections of equations and costs, and the equations for the script. `None` if the description
-/// is faulty.
-pub fn rest(source: &Source) -> Option<Value> {
-    let (manipulator, places) = validate::read_for(source, Scalar::F64).0?;
-    let model = Model::new(manipulator);
-    let module = derived(&model, &places, Selection::ALL, &mut Diagnostics::new())?;
-    let equations = equations::Equations::new(&model);
-    Some(json!({ "equations": equations.section(), "cost": cost::table(&module), "data": equations.data() }))
+/// The second step, of the arm's model and the programs of all its functions: the content of the sections of equations and costs, and the
+/// equations for the script.
+pub fn rest(model: &Model, module: &Module) -> Value {
+    let equations = equations::Equations::new(model);
+    json!({ "equations": equations.section(), "cost": cost::table(module), "data": equations.data() })
 }
 
 /// The programs of functions; `None` after a fault.

@@ -1,6 +1,7 @@
 //! Pages as texts: the same input gives the same bytes, a faulty description gives no page, and text of a file never becomes markup.
 
 use armgen_codegen::source::Source;
+use armgen_codegen::{schedule, validate, Model, Options, Trig};
 
 const ARM: &str = "name: arm
 convention: standard
@@ -83,7 +84,9 @@ fn the_second_step_brings_what_the_first_lacks() {
         let whole = page("arm.yaml", source.text());
         let (first, _) = armgen_page::picture(&source, "abc");
         let first = first.expect("a valid description");
-        let rest = armgen_page::rest(&source).expect("a valid description");
+        let model = Model::new(validate::read(&source).0.expect("a valid description").0);
+        let module = schedule::module(&model, &Options { trig: Trig::Fast, ..Options::default() });
+        let rest = armgen_page::rest(&model, &module);
         let script = |page: &str| page.split_once(">globalThis.robot").map(|(_, script)| script.to_owned());
         assert!(script(&whole).is_some(), "{name}");
         assert_eq!(script(&whole), script(&first), "{name}");

@@ -19,10 +19,11 @@ use std::path::Path;
 use armgen_codegen::diagnostic::Diagnostics;
 use armgen_codegen::emit::Language;
 use armgen_codegen::kinds::Scalar;
-use armgen_codegen::program::Trig;
+use armgen_codegen::program::{Module, Trig};
 use armgen_codegen::schedule::{Options, Selection};
 use armgen_codegen::show::{Reading, Sheet, Style};
 use armgen_codegen::source::Source;
+use armgen_codegen::validate::Places;
 use armgen_codegen::{catalogue, validate, Generated, Model};
 use armgen_texts::{json, module, shown, summary};
 use serde_json::{json, Value};
@@ -54,18 +55,15 @@ fn answer(request: &Value, source: &Source) -> Result<Value, String> {
             let (page, diagnostics) = armgen_page::picture(source, word(request, "nonce"));
             json!({ "page": page, "file": json::of_file(source, None, &diagnostics) })
         }
-        "rest" => json!({ "rest": armgen_page::rest(source) }),
-        "functions" => json!({ "functions": functions(&model(source)?) }),
-        "show" => show(request, &model(source)?)?,
-        "code" => code(request, source)?,
+        "rest" => of_arm(source, |arm| {
+            let whole = arm.whole()?.clone();
+            Ok(json!({ "rest": armgen_page::rest(&arm.model, &whole) }))
+        })?,
+        "functions" => of_arm(source, |arm| Ok(json!({ "functions": functions(&arm.model) })))?,
+        "show" => of_arm(source, |arm| show(request, &arm.model))?,
+        "code" => of_arm(source, |arm| code(request, arm))?,
         other => return Err(format!("there is no request `{other}`")),
     })
-}
-
-/// The model of a valid description.
-fn model(source: &Source) -> Result<Model, String> {
-    let (valid, _) = validate::read_for(source, Scalar::F64);
-    valid.map(|(manipulator, _)| Model::new(manipulator)).ok_or_else(faulty)
 }
 
 fn faulty() -> String {
@@ -121,46 +119,77 @@ fn show(request: &Value, model: &Model) -> Result<Value, String> {
     Ok(json!({ "text": sheet.text(), "latex": sheet.latex() }))
 }
 
-/// What makes a module, beside the text of its description.
-type Choice = (Trig, Vec<String>);
-
-thread_local! {
-    /// The modules of the last description, by what they were made with: languages share them.
-    static LAST: RefCell<(Option<Source>, Vec<(Choice, Generated)>)> = const { RefCell::new((None, Vec::new())) };
+/// A valid arm, with what was derived of it: panes and languages share it.
+struct Arm {
+    source: Source,
+    model: Model,
+    places: Places,
+    /// The programs of all functions.
+    whole: Option<Module>,
+    /// Modules by what they were made with: where sines come from, and the names of their functions.
+    made: Vec<((Trig, Vec<String>), Generated)>,
 }
 
-/// The files of a module, those of `armgen generate --ik` where the language has inverse kinematics.
-fn code(request: &Value, source: &Source) -> Result<Value, String> {
-    let language = Language::ALL.into_iter().find(|language| language.name() == word(request, "language"));
-    let language = language.ok_or_else(|| format!("there is no language `{}`", word(request, "language")))?;
-    let names = request["functions"].as_array().into_iter().flatten().filter_map(Value::as_str);
-    let choice: Choice = (Trig::of_language(language), names.map(str::to_owned).collect());
-    LAST.with_borrow_mut(|(last, made)| {
-        let same = last.as_ref().is_some_and(|last| (last.name(), last.text()) == (source.name(), source.text()));
-        if !same {
-            (*last, *made) = (Some(source.clone()), Vec::new());
+thread_local! {
+    /// The arm of the last description.
+    static LAST: RefCell<Option<Arm>> = const { RefCell::new(None) };
+}
+
+/// What is made of the arm of a description, which is read where it is not that of the last request.
+fn of_arm(source: &Source, make: impl FnOnce(&mut Arm) -> Result<Value, String>) -> Result<Value, String> {
+    LAST.with_borrow_mut(|last| {
+        let same = |arm: &Arm| (arm.source.name(), arm.source.text()) == (source.name(), source.text());
+        if !last.as_ref().is_some_and(same) {
+            let (manipulator, places) = validate::read_for(source, Scalar::F64).0.ok_or_else(faulty)?;
+            let model = Model::new(manipulator);
+            *last = Some(Arm { source: source.clone(), model, places, whole: None, made: Vec::new() });
         }
-        let at = match made.iter().position(|(with, _)| *with == choice) {
-            Some(at) => at,
-            None => {
-                made.push((choice.clone(), generated(source, &choice)?));
-                made.len() - 1
-            }
-        };
-        files(&made[at].1, language)
+        make(last.as_mut().expect("it was read"))
     })
 }
 
-fn generated(source: &Source, (trig, names): &Choice) -> Result<Generated, String> {
-    let functions = match names.as_slice() {
-        [] => Selection::ALL,
-        names => Selection::named(names).map_err(|unknown| unknown.to_string())?,
-    };
-    let options = Options { trig: *trig, functions, ..Options::default() };
-    let mut generated = armgen_codegen::generate(source, &options).0.ok_or_else(faulty)?;
-    // Without them the documentation is shorter.
-    let _ = armgen_certify::document_bounds(source, &mut generated);
-    Ok(generated)
+impl Arm {
+    fn programs(&self, functions: Selection) -> Result<Module, String> {
+        let options = Options { trig: Trig::Fast, functions, ..Options::default() };
+        armgen_codegen::programs(&self.model, &self.places, &options)
+            .map_err(|fault| format!("{}; {}", fault.message, fault.help))
+    }
+
+    fn whole(&mut self) -> Result<&Module, String> {
+        if self.whole.is_none() {
+            self.whole = Some(self.programs(Selection::ALL)?);
+        }
+        Ok(self.whole.as_ref().expect("it was derived"))
+    }
+
+    /// The module of functions, all if there are no names. Programs are the same wherever sines come from.
+    fn generated(&mut self, trig: Trig, names: Vec<String>) -> Result<&Generated, String> {
+        let choice = (trig, names);
+        let at = match self.made.iter().position(|(with, _)| *with == choice) {
+            Some(at) => at,
+            None => {
+                let programs = match choice.1.as_slice() {
+                    [] => self.whole()?.clone(),
+                    names => self.programs(Selection::named(names).map_err(|unknown| unknown.to_string())?)?,
+                };
+                let module = Module { trig, ..programs };
+                let mut generated = armgen_codegen::printed(&self.source, self.model.manipulator.clone(), module);
+                // Without them the documentation is shorter.
+                let _ = armgen_certify::document_bounds(&self.source, &mut generated);
+                self.made.push((choice, generated));
+                self.made.len() - 1
+            }
+        };
+        Ok(&self.made[at].1)
+    }
+}
+
+/// The files of a module, those of `armgen generate --ik` where the language has inverse kinematics.
+fn code(request: &Value, arm: &mut Arm) -> Result<Value, String> {
+    let language = Language::ALL.into_iter().find(|language| language.name() == word(request, "language"));
+    let language = language.ok_or_else(|| format!("there is no language `{}`", word(request, "language")))?;
+    let names = request["functions"].as_array().into_iter().flatten().filter_map(Value::as_str);
+    files(arm.generated(Trig::of_language(language), names.map(str::to_owned).collect())?, language)
 }
 
 fn files(generated: &Generated, language: Language) -> Result<Value, String> {
