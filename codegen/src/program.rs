@@ -170,6 +170,10 @@ pub struct Joint {
     pub velocity: Option<Number>,
     /// Highest |tau|.
     pub effort: Option<Number>,
+    /// Highest acceleration.
+    pub acceleration: Option<Number>,
+    /// Highest jerk.
+    pub jerk: Option<Number>,
 }
 
 /// All that the emitted module holds.

@@ -91,6 +91,8 @@ fn joint(joint: &manipulator::Joint) -> Joint {
         position: joint.limits.position.clone().map_or([None, None], |limits| limits.map(Some)),
         velocity: joint.limits.velocity.clone(),
         effort: joint.limits.effort.clone(),
+        acceleration: joint.limits.acceleration.clone(),
+        jerk: joint.limits.jerk.clone(),
     }
 }
 

@@ -162,6 +162,8 @@ pub struct LimitsDescription {
     pub velocity: Value,
     /// Highest acceleration.
     pub acceleration: Value,
+    /// Highest jerk.
+    pub jerk: Value,
     /// Highest torque or force.
     pub effort: Value,
 }

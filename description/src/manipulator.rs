@@ -167,7 +167,7 @@ pub struct PlacedBody {
     pub body: Body,
 }
 
-/// Limits of a joint; rad or m, rad/s or m/s, rad/s² or m/s², N m or N.
+/// Limits of a joint; rad or m, rad/s or m/s, rad/s² or m/s², rad/s³ or m/s³, N m or N.
 #[derive(Clone, Debug, Default)]
 pub struct Limits {
     /// Lowest and highest q.
@@ -176,6 +176,8 @@ pub struct Limits {
     pub velocity: Option<Number>,
     /// Highest |ddq| of planned motions.
     pub acceleration: Option<Number>,
+    /// Highest |dddq| of planned motions.
+    pub jerk: Option<Number>,
     /// Highest |tau|.
     pub effort: Option<Number>,
 }

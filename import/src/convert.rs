@@ -366,6 +366,7 @@ impl<'d> Converter<'d> {
         let sizes = [
             ("velocity", &joint.limits.velocity),
             ("acceleration", &joint.limits.acceleration),
+            ("jerk", &joint.limits.jerk),
             ("effort", &joint.limits.effort),
         ];
         for (name, value) in sizes {

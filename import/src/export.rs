@@ -403,7 +403,9 @@ impl Writer<'_> {
             let stribeck = friction.stribeck.as_ref().is_some_and(|stribeck| is_some(&stribeck.torque));
             stribeck || [&friction.offset, &friction.cubic, &friction.load].into_iter().any(is_some)
         });
-        joints_with("a URDF has no limits of acceleration; left out at", &|joint| joint.limits.acceleration.is_some());
+        joints_with("a URDF before version 1.2 has no limits of acceleration and jerk; left out at", &|joint| {
+            joint.limits.acceleration.is_some() || joint.limits.jerk.is_some()
+        });
         joints_with("a URDF has no gains of motors; left out at", &|joint| {
             joint.motor.as_ref().is_some_and(|motor| motor.gain.is_some())
         });

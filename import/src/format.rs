@@ -20,6 +20,8 @@ pub(crate) struct Motion {
     pub(crate) axis_offset: f64,
     pub(crate) position: Option<[Decimal; 2]>,
     pub(crate) velocity: Option<Decimal>,
+    pub(crate) acceleration: Option<Decimal>,
+    pub(crate) jerk: Option<Decimal>,
     pub(crate) effort: Option<Decimal>,
     pub(crate) viscous: Option<Decimal>,
     pub(crate) coulomb: Option<Decimal>,

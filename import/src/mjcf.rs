@@ -498,6 +498,8 @@ impl Format for Mjcf<'_, '_> {
             axis_offset,
             position: None,
             velocity: None,
+            acceleration: None,
+            jerk: None,
             effort: None,
             viscous: None,
             coulomb: None,

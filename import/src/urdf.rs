@@ -26,8 +26,8 @@ const ELEMENTS: [&str; 6] = ["ixx", "iyy", "izz", "ixy", "ixz", "iyz"];
 const QUATERNION: &str = "quat_xyzw";
 /// The newest minor version of URDF 1 that is known.
 const NEWEST: u32 = 2;
-/// Limits since URDF 1.2 for which a description has no key.
-const FURTHER_LIMITS: [&str; 3] = ["acceleration", "deceleration", "jerk"];
+/// Limits since URDF 1.2: a description has one for both.
+const ACCELERATIONS: [&str; 2] = ["acceleration", "deceleration"];
 
 /// A URDF.
 pub(crate) struct Urdf<'a, 'i> {
@@ -253,6 +253,12 @@ impl Format for Urdf<'_, '_> {
         let (lower, upper) = (self.optional(joint, "limit", "lower", values), self.optional(joint, "limit", "upper", values));
         let velocity = self.optional(joint, "limit", "velocity", values);
         let effort = self.optional(joint, "limit", "effort", values);
+        let accelerations = ACCELERATIONS.map(|limit| {
+            let given = self.optional(joint, "limit", limit, values);
+            values.largest(given, limit, name)
+        });
+        let acceleration = accelerations.into_iter().flatten().min_by(|a, b| a.value.total_cmp(&b.value));
+        let jerk = self.optional(joint, "limit", "jerk", values);
         let viscous = self.optional(joint, "dynamics", "damping", values);
         let coulomb = self.optional(joint, "dynamics", "friction", values);
         let position = match child(node, "limit") {
@@ -264,6 +270,8 @@ impl Format for Urdf<'_, '_> {
             axis_offset,
             position,
             velocity: values.largest_velocity(velocity, node.attribute("type") == Some("prismatic"), name),
+            acceleration,
+            jerk: values.largest(jerk, "jerk", name),
             effort: values.largest(effort, "effort", name),
             viscous: values.coefficient(viscous, name),
             coulomb: values.coefficient(coulomb, name),
@@ -318,13 +326,13 @@ impl Format for Urdf<'_, '_> {
         };
         let axes = lacking("axis", &|_| true);
         let limits = lacking("limit", &|kind| kind != "continuous");
-        let further = |joint: &usize| {
+        let two = |joint: &usize| {
             let limit = child(self.joints[*joint], "limit")?;
-            let given = FURTHER_LIMITS.into_iter().filter_map(|name| Some(format!("`{name}` {}", shown(limit.attribute(name)?))));
-            let given: Vec<String> = given.collect();
-            (!given.is_empty()).then(|| format!("{} of `{}`", given.join(", "), self.name_of(*joint)))
+            let [up, down] = ACCELERATIONS.map(|name| limit.attribute(name));
+            let (up, down) = up.zip(down).filter(|(up, down)| up.trim() != down.trim())?;
+            Some(format!("{} and {} of `{}`", shown(up), shown(down), self.name_of(*joint)))
         };
-        let further: Vec<String> = moving.iter().filter_map(further).collect();
+        let two: Vec<String> = moving.iter().filter_map(two).collect();
         let newer = (self.minor > NEWEST).then(|| format!("the file is of URDF 1.{}, of which 1.{NEWEST} is read", self.minor));
         let gravity = "a URDF does not say how the arm stands: gravity is 9.81 m/s² against z of its root link; turn `gravity` for another one";
         [
@@ -333,7 +341,8 @@ impl Format for Urdf<'_, '_> {
             limits.map(|names| {
                 format!("without `limit`, taken to have none (bounds take ±π rad or ±1 m, 4 rad/s or 1 m/s): {names}")
             }),
-            (!further.is_empty()).then(|| format!("limits left out, for which a description has no key: {}", further.join("; "))),
+            (!two.is_empty())
+                .then(|| format!("`acceleration` is the smaller of acceleration and deceleration: {}", two.join("; "))),
             newer,
         ]
         .into_iter()

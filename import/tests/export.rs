@@ -45,7 +45,7 @@ fn the_text_stays_the_same() {
 fn what_a_urdf_cannot_hold_is_named() {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../tests/robots/everything.yaml");
     let lines = exported(&std::fs::read_to_string(&path).expect("a readable file")).lines.join("\n");
-    for what in ["rotors", "payload", "gravity", "`task`", "parameters", "velocity", "rounded"] {
+    for what in ["rotors", "payload", "gravity", "`task`", "parameters", "velocity", "jerk", "rounded"] {
         assert!(lines.contains(what), "{what}:\n{lines}");
     }
     let text = std::fs::read_to_string(path.with_file_name("../../robots/panda7.yaml")).expect("a readable file");

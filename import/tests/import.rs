@@ -309,8 +309,7 @@ fn newer_versions_of_urdf_are_read() {
     };
     let turned = with("1.0", "rpy='0 0 1.5708'", "").0;
     for version in ["1.1", "1.2", "1.7"] {
-        let (lines, report) =
-            with(version, "quat_xyzw='0 0 0.70710678 0.70710678'", "acceleration='5' deceleration='4' jerk='100'");
+        let (lines, report) = with(version, "quat_xyzw='0 0 0.70710678 0.70710678'", "");
         let plain = |lines: &[String]| {
             lines.iter().map(|line| line.split("  #").next().unwrap_or_default().to_owned()).collect::<Vec<_>>()
         };
@@ -319,10 +318,19 @@ fn newer_versions_of_urdf_are_read() {
             report.iter().filter(|line| line.contains("of URDF 1.7, of which 1.2 is read")).count(),
             usize::from(version == "1.7")
         );
-        let left_out =
-            "limits left out, for which a description has no key: `acceleration` 5, `deceleration` 4, `jerk` 100 of `j`";
-        assert!(report.iter().any(|line| line == left_out), "{report:?}");
     }
+    // A description has one limit for both accelerations: the smaller.
+    let limits_of = |limit: &str| {
+        let (lines, report) = with("1.2", "", limit);
+        let limits = lines.iter().find_map(|line| line.trim().strip_prefix("limits: ").map(str::to_owned)).expect("limits");
+        (limits, report.into_iter().find(|line| line.starts_with("`acceleration` is")))
+    };
+    let limits = |further: &str| format!("{{position: [-1, 1], velocity: 1, {further}effort: 1}}");
+    let smaller = "`acceleration` is the smaller of acceleration and deceleration: 5 and 4 of `j`";
+    let given = limits_of("acceleration='5' deceleration='4' jerk='100'");
+    assert_eq!(given, (limits("acceleration: 4, jerk: 100, "), Some(smaller.to_owned())));
+    assert_eq!(limits_of("acceleration='5' deceleration='5'"), (limits("acceleration: 5, "), None));
+    assert_eq!(limits_of("deceleration='3'"), (limits("acceleration: 3, "), None));
     // A quaternion that is no such angle keeps its digits, w first.
     let (lines, _) = with("1.1", "quat_xyzw='1 2 3 4'", "");
     assert_eq!(lines.iter().filter(|line| line.contains("quat: [4, 1, 2, 3]")).count(), 2, "{lines:?}");

@@ -192,6 +192,26 @@ fn a_robot_behind_slides_takes_only_what_matters_and_equals_its_equations() {
     equals_its_equations(&format!("{}, {before:?}", robot.display()), &text);
 }
 
+/// Axes apart by pi to sixteen and to eight digits: what one turns of the other is dust, which only roundings at the length of the axes allow.
+#[test]
+#[ignore = "wide"]
+fn axes_apart_by_nearly_pi_equal_their_equations() {
+    for twist in ["3.141592653589793", "3.14159265"] {
+        let text = format!(
+            "name: apart
+convention: standard
+gravity: [0, 0, -9.81]
+joints:
+  - {{name: a, type: prismatic, a: -0.03, alpha: pi/2, d: -0.45, theta: 3.1415927, link: {{mass: 2.5, com: [0.5, 0, 0.1], inertia: {{xx: 0.1, yy: 0.1, zz: 0.1}}}}}}
+  - {{name: b, type: prismatic, a: -6.26e-06, alpha: -pi/2, d: 2.14e-05, theta: -0.2, link: {{mass: 2.5, inertia: {{xx: 0.1, yy: 0.1, zz: 0.1}}}}}}
+  - {{name: c, type: revolute, a: 0, alpha: {twist}, d: -6.38e-06, theta: 2.89, link: {{mass: 2.5, inertia: {{xx: 0.1, yy: 0.1, zz: 0.1}}}}}}
+  - {{name: d, type: revolute, a: 0.2484, alpha: 0.76, d: 0.48, theta: 1.5707963267948966, link: {{mass: 1.2, inertia: {{xx: 0.1, yy: 0.1, zz: 0.1}}}}}}
+"
+        );
+        equals_its_equations(twist, &text);
+    }
+}
+
 #[test]
 #[ignore = "full: many minutes; a robot that is drawn is wide"]
 fn every_robot_behind_slides_takes_only_what_matters_and_equals_its_equations() {

@@ -256,3 +256,17 @@ fn an_edit_of_a_mass_reaches_all_that_is_built_on_it() {
     check("gravity", &model.gravity(&s.q));
     check("inverse_dynamics", &model.inverse_dynamics(&s.q, &s.dq, &s.ddq));
 }
+
+/// Limits of acceleration and jerk, infinite where a joint has none.
+#[test]
+fn limits_of_planned_motions_are_constants() {
+    let text = emitted("everything").text;
+    for (constant, size) in [("ACCELERATION_LIMITS", "12.5"), ("JERK_LIMITS", "250.0")] {
+        let begin = format!("pub const {constant}: [Real; DOF] = [");
+        let (_, rest) = text.split_once(&begin).expect(constant);
+        let (entries, _) = rest.split_once("];").expect(constant);
+        let given: Vec<&str> =
+            entries.split(',').map(str::trim).filter(|entry| !["", "Real::INFINITY"].contains(entry)).collect();
+        assert_eq!(given, [size], "{constant}: {entries}");
+    }
+}

@@ -34,6 +34,11 @@ pub trait Arithmetic {
     fn integer(&self, value: i64) -> Self::Element;
     /// The value of an exact constant; `None` where it divides by 0.
     fn constant(&self, formula: &Formula) -> Option<Self::Element>;
+    /// A coordinate of a unit vector of the description. Floats round it at the length of the vector: an axis that is turned by nearly pi has
+    /// coordinates of 1e-16, which no product of its rotations knows better.
+    fn coordinate(&self, formula: &Formula) -> Option<Self::Element> {
+        self.constant(formula)
+    }
     /// A random element, not 0.
     fn draw(&mut self) -> Self::Element;
     /// A random point of the circle: sine and cosine.
@@ -57,6 +62,10 @@ impl<A: Arithmetic + ?Sized> Arithmetic for &mut A {
 
     fn constant(&self, formula: &Formula) -> Option<A::Element> {
         (**self).constant(formula)
+    }
+
+    fn coordinate(&self, formula: &Formula) -> Option<A::Element> {
+        (**self).coordinate(formula)
     }
 
     fn draw(&mut self) -> A::Element {

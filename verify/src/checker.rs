@@ -101,8 +101,10 @@ impl<K: Arithmetic> Point<K> {
         let Some(literals) = self.literals_of(program, literals) else {
             return Some((0, "has a constant that divides by 0 or is too long"));
         };
-        let longest: usize = expected.iter().map(Element::bits).max().unwrap_or(0);
-        let values = program.run_within(Limits::beside(longest, expected.len()), &self.reference.state, &literals);
+        let longest = |values: &[K::Element]| values.iter().map(Element::bits).max().unwrap_or(0);
+        let of_all = self.reference.values.values().map(|values| longest(values)).max().unwrap_or(0);
+        let limits = Limits::beside(longest(expected), of_all, expected.len());
+        let values = program.run_within(limits, &self.reference.state, &literals);
         if let Some(entry) = values.iter().position(Option::is_none) {
             let before = values[..entry].iter().zip(expected).position(|(value, expected)| value.as_ref() != Some(expected));
             if before.is_none() || base && program.name == ENERGY_WITH {

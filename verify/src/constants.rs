@@ -1,7 +1,8 @@
 //! Compares the constants of a module with the description.
 
+use armgen_description::exact::Number;
 use armgen_description::kinds::{JointKind, ParameterId};
-use armgen_description::manipulator::Manipulator;
+use armgen_description::manipulator::{Limits, Manipulator};
 
 use crate::arithmetic::prime::Residue;
 use crate::base::OwnParameters;
@@ -168,7 +169,7 @@ fn expected(checker: &Checker, module: &Module, nominal: &[Formula], names: &[St
     let joints = &manipulator.joints;
     let array = |entries: Vec<Expected>| Expected::Array(entries);
     let texts = |texts: Vec<String>| array(texts.into_iter().map(Expected::Text).collect());
-    let bound = |bound: Option<&armgen_description::exact::Number>, negative: bool| match bound {
+    let bound = |bound: Option<&Number>, negative: bool| match bound {
         Some(value) => Expected::Number(formula(value)),
         None => Expected::Infinite(negative),
     };
@@ -176,8 +177,7 @@ fn expected(checker: &Checker, module: &Module, nominal: &[Formula], names: &[St
         let pair = j.limits.position.as_ref();
         array(vec![bound(pair.map(|p| &p[0]), true), bound(pair.map(|p| &p[1]), false)])
     });
-    let velocity = joints.iter().map(|j| bound(j.limits.velocity.as_ref(), false));
-    let effort = joints.iter().map(|j| bound(j.limits.effort.as_ref(), false));
+    let sizes = |of: fn(&Limits) -> &Option<Number>| array(joints.iter().map(|j| bound(of(&j.limits).as_ref(), false)).collect());
     let parameter_names = checker.vector().names(manipulator).unwrap_or_else(|| names.to_vec());
     let mut all = vec![
         ("NAME", Expected::Text(manipulator.name.clone())),
@@ -185,8 +185,10 @@ fn expected(checker: &Checker, module: &Module, nominal: &[Formula], names: &[St
         ("JOINT_NAMES", texts(joints.iter().map(|j| j.name.clone()).collect())),
         ("JOINT_IS_REVOLUTE", array(joints.iter().map(|j| Expected::Truth(j.kind == JointKind::Revolute)).collect())),
         ("POSITION_LIMITS", array(position.collect())),
-        ("VELOCITY_LIMITS", array(velocity.collect())),
-        ("EFFORT_LIMITS", array(effort.collect())),
+        ("VELOCITY_LIMITS", sizes(|limits| &limits.velocity)),
+        ("EFFORT_LIMITS", sizes(|limits| &limits.effort)),
+        ("ACCELERATION_LIMITS", sizes(|limits| &limits.acceleration)),
+        ("JERK_LIMITS", sizes(|limits| &limits.jerk)),
         ("TASK_ROWS", Expected::Integer(manipulator.task.len() as u64)),
         ("TASK", array(manipulator.task.iter().map(|row| Expected::Integer(row.index() as u64)).collect())),
         ("PARAMETERS", Expected::Integer(parameter_names.len() as u64)),

@@ -124,6 +124,10 @@ where
         self.0.constant(formula).map(Member::into_number)
     }
 
+    fn coordinate(&self, formula: &Formula) -> Option<Number> {
+        self.0.coordinate(formula).map(Member::into_number)
+    }
+
     fn draw(&mut self) -> Number {
         self.0.draw().into_number()
     }

@@ -3,6 +3,7 @@
 //! The program is that of [`reference`](mod@crate::reference), in double precision. At states it is run in floats with running errors
 //! ([`running`](mod@crate::arithmetic::running)); over a box in intervals with the largest errors of their values, by the rules of
 //! [`mod@crate::ranges`]. What divides by an interval that 0 lies in has no bound there. Arguments are rounded once: no one has them better.
+//! Unit vectors of the description are rounded at their length, so that axes apart by pi to sixteen digits turn by a rounding, not by a part of it.
 
 use std::collections::BTreeMap;
 
@@ -144,6 +145,12 @@ impl Arithmetic for Ranges {
         let exact = formula.as_rational().is_some_and(|e| crate::formula::Rational::try_from(value).is_ok_and(|f| f == *e));
         let error = if exact { 0.0 } else { Float::F64.unit() * value.abs() };
         Some(Range { low: value - error, high: value + error, error })
+    }
+
+    fn coordinate(&self, formula: &Formula) -> Option<Range> {
+        let Range { low, high, error } = self.constant(formula)?;
+        let error = if error == 0.0 { 0.0 } else { Float::F64.unit() };
+        Some(Range { low: low - error, high: high + error, error })
     }
 
     fn draw(&mut self) -> Range {

@@ -219,10 +219,11 @@ impl Default for Limits {
 }
 
 impl Limits {
-    /// The limits for this number of entries with at most `longest` bits. Intermediate values are several times as long; an acceleration with five
-    /// roots can itself have a million bits.
-    pub fn beside(longest: usize, entries: usize) -> Limits {
-        let long = 4 * longest;
+    /// The limits for this number of entries with at most `longest` bits, where no function has an entry of more than `of_all` bits. Intermediate
+    /// values are several times as long, or as long as the inverse of a matrix that another function returns; an acceleration with five roots
+    /// can itself have a million bits.
+    pub fn beside(longest: usize, of_all: usize, entries: usize) -> Limits {
+        let long = of_all.max(4 * longest);
         let steps = LONG_STEPS + LONG_STEPS_OF_AN_ENTRY * entries as u64;
         Limits {
             bits: MOST_BITS.max(long),
@@ -412,7 +413,10 @@ mod tests {
     fn long_arms_stay_within_the_limits() {
         // The derivatives of the forward dynamics of a chain of 32 joints at a rational point: 3072 entries of 8048 bits in 232 986 steps.
         let work = 232_986 * squared_words(3 * 8192);
-        assert!(Limits::beside(8048, 3072).work > work, "{work}");
-        assert!(Limits::beside(200, 16).work < 2 * MOST_WORK_BESIDE);
+        assert!(Limits::beside(8048, 8048, 3072).work > work, "{work}");
+        assert!(Limits::beside(200, 200, 16).work < 2 * MOST_WORK_BESIDE);
+        // The inertia in the task of six joints with general angles: its steps hold inverses, as the derivatives of the forward dynamics do.
+        let work = 5_500_000_000;
+        assert!(Limits::beside(11_149, 112_524, 36).work > work && Limits::beside(11_149, 11_149, 36).work < work);
     }
 }

@@ -2,7 +2,7 @@
 //! as `x + 1e17 - 1e17` is.
 //!
 //! There is one rule. With u the unit roundoff, n the number of joints, e the proved bound of an entry as it follows from the text, E that of a
-//! plain program of the equations whose arguments are rounded once ([`mod@crate::plain`]), and T the size of the largest entry of its kind:
+//! plain program of the equations ([`mod@crate::plain`]), and T the size of the largest entry of its kind:
 //!
 //! ```text
 //! e ≤ 2^(4 + n) (E + u T)

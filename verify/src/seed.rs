@@ -170,7 +170,8 @@ fn of_description(manipulator: &Manipulator) -> Hash {
         arm.word(&format!("{:?} {:?}", joint.kind, joint.parent));
         arm.row(joint);
         let limits = &joint.limits;
-        let limits = limits.position.iter().flatten().chain(&limits.velocity).chain(&limits.effort);
+        let sizes = [&limits.velocity, &limits.effort, &limits.acceleration, &limits.jerk];
+        let limits = limits.position.iter().flatten().chain(sizes.into_iter().flatten());
         limits.for_each(|limit| arm.number(limit));
         for (k, part) in joint.link.iter().enumerate() {
             if k > 0 {

@@ -16,7 +16,7 @@ fn a_certificate_is_written_and_verified_again() {
         let path = module.to_str().expect("UTF-8");
         let output = check(&["generate", &yaml, "--scalar", scalar, "--out", path, "--verify"], 0);
         assert!(
-            err(&output).contains(&format!("{functions} functions and 15 constants equal the equations")),
+            err(&output).contains(&format!("{functions} functions and 17 constants equal the equations")),
             "{}",
             err(&output)
         );

@@ -194,7 +194,7 @@ pub(super) struct Constant {
 }
 
 /// The constants of a module in order, with the base parameters last.
-const CONSTANTS: [&str; 16] = [
+const CONSTANTS: [&str; 18] = [
     "NAME",
     "DOF",
     "JOINT_NAMES",
@@ -202,6 +202,8 @@ const CONSTANTS: [&str; 16] = [
     "POSITION_LIMITS",
     "VELOCITY_LIMITS",
     "EFFORT_LIMITS",
+    "ACCELERATION_LIMITS",
+    "JERK_LIMITS",
     "TASK_ROWS",
     "TASK",
     "PARAMETERS",
@@ -227,6 +229,10 @@ pub(super) fn constants_documentation(described: &DescribedParameters, first: us
         "EFFORT_LIMITS" => {
             "Highest joint torque on the joint side of the gear, N m or N; infinite where the description gives none.".into()
         }
+        "ACCELERATION_LIMITS" => {
+            "Highest acceleration of planned motions, rad/s² or m/s²; infinite where the description gives none.".into()
+        }
+        "JERK_LIMITS" => "Highest jerk of planned motions, rad/s³ or m/s³; infinite where the description gives none.".into(),
         "TASK_ROWS" => "Number of rows of the operational space.".into(),
         "TASK" => format!(
             "Rows of the geometric Jacobian that make up the operational space: {a} {b} {c} along x y z, {d} {e} {f} about x y z, in the base frame."
@@ -286,6 +292,8 @@ pub(super) fn constants(module: &Module, first: usize) -> Vec<Constant> {
             "POSITION_LIMITS" => joints(&position),
             "VELOCITY_LIMITS" => joints(&|joint| number(&joint.velocity, false)),
             "EFFORT_LIMITS" => joints(&|joint| number(&joint.effort, false)),
+            "ACCELERATION_LIMITS" => joints(&|joint| number(&joint.acceleration, false)),
+            "JERK_LIMITS" => joints(&|joint| number(&joint.jerk, false)),
             "TASK_ROWS" => Value::Count(module.task.len()),
             "TASK" => Value::Array(module.task.iter().map(|&row| Value::Count(row + first)).collect()),
             "PARAMETERS" => Value::Count(module.parameters.len()),

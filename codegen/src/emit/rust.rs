@@ -23,7 +23,7 @@ use crate::catalogue::{Absent, Length, Quantity, ResultPart, Sizes};
 use crate::exact::Number;
 use crate::kinds::Scalar;
 use crate::parallel::parallel_map;
-use crate::program::{Function, Module};
+use crate::program::{Function, Joint, Module};
 pub(super) use inverse_kinematics::{
     about_redundancy, about_target, items as items_of_inverse_kinematics, meanings, what_is_invalid,
 };
@@ -164,14 +164,27 @@ fn constants(module: &Module) -> TokenStream {
         let (low, high) = (number(low, quote!(Real::NEG_INFINITY)), number(high, infinity()));
         quote!([#low, #high])
     });
-    let velocity = module.joints.iter().map(|joint| number(&joint.velocity, infinity()));
-    let effort = module.joints.iter().map(|joint| number(&joint.effort, infinity()));
+    let sizes: [(&str, fn(&Joint) -> &Option<Number>); 4] = [
+        ("VELOCITY_LIMITS", |joint| &joint.velocity),
+        ("EFFORT_LIMITS", |joint| &joint.effort),
+        ("ACCELERATION_LIMITS", |joint| &joint.acceleration),
+        ("JERK_LIMITS", |joint| &joint.jerk),
+    ];
     let parameter_names = module.parameters.iter().map(|parameter| &parameter.name);
     let nominal = module.parameters.iter().map(|parameter| literal(&parameter.nominal, module.scalar));
     let documented = documented_constants(module);
     let said = |constant: &str| documentation_of(&documented, constant);
     let [of_name, of_dof, of_joint_names, of_revolute] = ["NAME", "DOF", "JOINT_NAMES", "JOINT_IS_REVOLUTE"].map(said);
-    let [of_position, of_velocity, of_effort] = ["POSITION_LIMITS", "VELOCITY_LIMITS", "EFFORT_LIMITS"].map(said);
+    let of_position = said("POSITION_LIMITS");
+    let sizes = sizes.map(|(constant, of)| {
+        let (said, name, values) =
+            (said(constant), format_ident!("{constant}"), module.joints.iter().map(|joint| number(of(joint), infinity())));
+        quote! {
+            #said
+            #[allow(dead_code, clippy::all)]
+            pub const #name: [Real; DOF] = [#(#values),*];
+        }
+    });
     let [of_rows, of_task] = ["TASK_ROWS", "TASK"].map(said);
     let [of_parameters, of_names, of_nominal] = ["PARAMETERS", "PARAMETER_NAMES", "NOMINAL_PARAMETERS"].map(said);
     let gravity = module.gravity_is_argument.then(|| {
@@ -200,12 +213,7 @@ fn constants(module: &Module) -> TokenStream {
         #of_position
         #[allow(dead_code, clippy::all)]
         pub const POSITION_LIMITS: [[Real; 2]; DOF] = [#(#position),*];
-        #of_velocity
-        #[allow(dead_code, clippy::all)]
-        pub const VELOCITY_LIMITS: [Real; DOF] = [#(#velocity),*];
-        #of_effort
-        #[allow(dead_code, clippy::all)]
-        pub const EFFORT_LIMITS: [Real; DOF] = [#(#effort),*];
+        #(#sizes)*
         #of_rows
         #[allow(dead_code)]
         pub const TASK_ROWS: usize = #rows;

@@ -218,6 +218,7 @@ pub(super) const LIMITS: &[Entry] = &[
     usual("position", "position: [-pi/2, pi/2]", Shape::Vector(2, POSITION), "Lowest and highest position."),
     optional("velocity", Shape::Expression(RATE), "Highest rate."),
     optional("acceleration", Shape::Expression("rad/s² or m/s²"), "Highest acceleration of planned motions."),
+    optional("jerk", Shape::Expression("rad/s³ or m/s³"), "Highest rate of the acceleration of planned motions."),
     optional("effort", Shape::Expression(EFFORT), "Highest torque or force, on the joint side of the gear."),
 ];
 const COM: Entry = optional("com", Shape::Vector(3, LENGTH), "Centre of mass in the frame of the body.");

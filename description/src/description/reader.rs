@@ -149,6 +149,7 @@ impl Reader<'_> {
                 position: fields.get("position").and_then(|(key, node)| self.vector(node, key, "position", ["lowest", "highest"])),
                 velocity: self.field(&fields, "velocity"),
                 acceleration: self.field(&fields, "acceleration"),
+                jerk: self.field(&fields, "jerk"),
                 effort: self.field(&fields, "effort"),
             }),
             link: fields.get("link").and_then(|(key, node)| self.body(node, key, "`link`", LINK)),

@@ -202,6 +202,7 @@ macro_rules! walk {
                     $three(to, Role::Limit, position, & $($mutable)? joint.limits.position);
                     $one(to, Role::Limit, rate, & $($mutable)? joint.limits.velocity);
                     $one(to, Role::Limit, Fixed, & $($mutable)? joint.limits.acceleration);
+                    $one(to, Role::Limit, Fixed, & $($mutable)? joint.limits.jerk);
                     $one(to, Role::Limit, effort, & $($mutable)? joint.limits.effort);
                     if let Some(link) = & $($mutable)? joint.link {
                         $body(to, link);

@@ -150,8 +150,9 @@ fn limits(description: &LimitsDescription, kind: Option<JointKind>, called: &str
     };
     let velocity = positive(description.velocity.as_ref(), "velocity", called, context);
     let acceleration = positive(description.acceleration.as_ref(), "acceleration", called, context);
+    let jerk = positive(description.jerk.as_ref(), "jerk", called, context);
     let effort = positive(description.effort.as_ref(), "effort", called, context);
-    Some(Limits { position: position?, velocity: velocity?, acceleration: acceleration?, effort: effort? })
+    Some(Limits { position: position?, velocity: velocity?, acceleration: acceleration?, jerk: jerk?, effort: effort? })
 }
 
 /// A limit of a size; `Some(None)` without a limit.

@@ -113,7 +113,28 @@ impl Arithmetic for RunningNumbers {
         Some(Running::rounded([value; LANES], if exact { 0.0 } else { 1.0 }))
     }
 
+    fn coordinate(&self, formula: &Formula) -> Option<Running> {
+        let Running { value, error } = self.constant(formula)?;
+        Some(Running { value, error: error.map(|error| if error == 0.0 { 0.0 } else { UNIT }) })
+    }
+
     fn draw(&mut self) -> Running {
         self.given.pop_front().unwrap_or(Running::exact([1.0; LANES]))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn coordinates_are_rounded_at_the_length_of_their_vector() {
+        let errors = |text: &str| {
+            let (numbers, formula) = (RunningNumbers::default(), Formula::parse(text).expect("a formula"));
+            [numbers.constant(&formula), numbers.coordinate(&formula)].map(|number| number.expect("a number").error[0])
+        };
+        let [own, of_vector] = errors("sin(3.141592653589793)");
+        assert!(own < 1e-31 && of_vector == UNIT, "{own} {of_vector}");
+        assert_eq!([errors("0"), errors("1/2"), errors("1")], [[0.0; 2]; 3]);
     }
 }

@@ -139,8 +139,9 @@ impl<K: Arithmetic> Builder<'_, K> {
         Some([self.polynomial(&vector[0])?, self.polynomial(&vector[1])?, self.polynomial(&vector[2])?])
     }
 
-    fn row(&self, row: &[Number; 3]) -> Option<Vector<K::Element>> {
-        Some([self.number(&row[0])?, self.number(&row[1])?, self.number(&row[2])?])
+    fn row(&self, [x, y, z]: &[Number; 3]) -> Option<Vector<K::Element>> {
+        let coordinate = |number| self.arithmetic.coordinate(&formula(number));
+        Some([coordinate(x)?, coordinate(y)?, coordinate(z)?])
     }
 
     fn frame(&self, placement: &manipulator::Placement) -> Option<Frame<K::Element>> {

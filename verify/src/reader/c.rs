@@ -190,7 +190,8 @@ fn constants(
     // In this order; those after the common ones exist only for arms that need them.
     for name in ["NAME", "JOINT_IS_REVOLUTE", "", "DOF", "PARAMETERS", "TASK_ROWS", "TASK", "JOINT_NAMES"]
         .into_iter()
-        .chain(["POSITION_LIMITS", "VELOCITY_LIMITS", "EFFORT_LIMITS", "PARAMETER_NAMES", "NOMINAL_PARAMETERS"])
+        .chain(["POSITION_LIMITS", "VELOCITY_LIMITS", "EFFORT_LIMITS", "ACCELERATION_LIMITS", "JERK_LIMITS"])
+        .chain(["PARAMETER_NAMES", "NOMINAL_PARAMETERS"])
         .chain([NOMINAL_GRAVITY, "BASE_PARAMETERS", "BASE_PARAMETER_NAMES", "NOMINAL_BASE_PARAMETERS"])
     {
         if name.is_empty() {

@@ -21,7 +21,7 @@ const ALL_LINTS: &str = "#[allow(dead_code, clippy::all)]";
 pub(super) const INTO: &str = "_into";
 
 /// The permitted constants, with their types.
-const CONSTANTS: [(&str, &str); 16] = [
+const CONSTANTS: [(&str, &str); 18] = [
     ("NAME", "&str"),
     ("DOF", "usize"),
     ("JOINT_NAMES", "[&str; DOF]"),
@@ -29,6 +29,8 @@ const CONSTANTS: [(&str, &str); 16] = [
     ("POSITION_LIMITS", "[[Real; 2]; DOF]"),
     ("VELOCITY_LIMITS", "[Real; DOF]"),
     ("EFFORT_LIMITS", "[Real; DOF]"),
+    ("ACCELERATION_LIMITS", "[Real; DOF]"),
+    ("JERK_LIMITS", "[Real; DOF]"),
     ("TASK_ROWS", "usize"),
     ("TASK", "[usize; TASK_ROWS]"),
     ("PARAMETERS", "usize"),

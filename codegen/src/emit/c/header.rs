@@ -115,11 +115,13 @@ pub(super) fn macros(module: &Module) -> String {
             braces(rows)
         );
     }
-    text += "/* Initialisers of arrays. Limits are rad or m, per s, N m or N; infinite (math.h) where the description gives none. */\n";
+    text += "/* Initialisers of arrays. Limits are rad or m, per s, s² and s³, N m or N; infinite (math.h) where the description gives none. */\n";
     let _ = writeln!(text, "#define {upper}_JOINT_NAMES {}", braces(module.joints.iter().map(joint).collect()));
     let _ = writeln!(text, "#define {upper}_POSITION_LIMITS {}", braces(positions.collect()));
     let _ = writeln!(text, "#define {upper}_VELOCITY_LIMITS {}", limits(|joint| &joint.velocity));
     let _ = writeln!(text, "#define {upper}_EFFORT_LIMITS {}", limits(|joint| &joint.effort));
+    let _ = writeln!(text, "#define {upper}_ACCELERATION_LIMITS {}", limits(|joint| &joint.acceleration));
+    let _ = writeln!(text, "#define {upper}_JERK_LIMITS {}", limits(|joint| &joint.jerk));
     if !module.parameters.is_empty() {
         let names = module.parameters.iter().map(|parameter| format!("\"{}\"", parameter.name)).collect();
         let nominal = module.parameters.iter().map(|parameter| constant(&parameter.nominal, module.scalar)).collect();

@@ -38,7 +38,7 @@ pub(in crate::reader) enum Entry {
 }
 
 /// The permitted constants: name, kind of entries, and nesting depth of arrays.
-pub(in crate::reader) const CONSTANTS: [(&str, Entry, usize); 16] = [
+pub(in crate::reader) const CONSTANTS: [(&str, Entry, usize); 18] = [
     ("NAME", Entry::Text, 0),
     ("DOF", Entry::Integer, 0),
     ("JOINT_NAMES", Entry::Text, 1),
@@ -46,6 +46,8 @@ pub(in crate::reader) const CONSTANTS: [(&str, Entry, usize); 16] = [
     ("POSITION_LIMITS", Entry::Real, 2),
     ("VELOCITY_LIMITS", Entry::Real, 1),
     ("EFFORT_LIMITS", Entry::Real, 1),
+    ("ACCELERATION_LIMITS", Entry::Real, 1),
+    ("JERK_LIMITS", Entry::Real, 1),
     ("TASK_ROWS", Entry::Integer, 0),
     ("TASK", Entry::Integer, 1),
     ("PARAMETERS", Entry::Integer, 0),
