@@ -8,6 +8,7 @@ pub(crate) mod export;
 pub(crate) mod generate;
 pub(crate) mod identify;
 pub(crate) mod import;
+pub(crate) mod manual;
 pub(crate) mod package;
 pub(crate) mod page;
 pub(crate) mod schema;

@@ -19,6 +19,8 @@ mod hints;
 mod input;
 #[cfg(test)]
 mod pages;
+#[cfg(test)]
+mod versions;
 
 use std::ffi::OsString;
 use std::path::PathBuf;
@@ -385,6 +387,14 @@ file that armgen accepts; `armgen check` also judges names, signs and sums.")]
         #[arg(value_enum)]
         shell: clap_complete::Shell,
     },
+    /// Write the pages of `man` for the program and its commands
+    #[command(after_help = "Examples:
+  armgen manual --out ~/.local/share/man/man1       then: man armgen, man armgen-check")]
+    Manual {
+        /// Folder for the pages
+        #[arg(long, value_name = "FOLDER", value_hint = ValueHint::DirPath)]
+        out: PathBuf,
+    },
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
@@ -534,5 +544,6 @@ fn run(command: Command) -> u8 {
         }
         Command::Schema => commands::schema::run(),
         Command::Completions { shell } => commands::completions::run(shell),
+        Command::Manual { out } => commands::manual::run(&out),
     }
 }

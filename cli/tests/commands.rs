@@ -101,6 +101,27 @@ fn completions_for_every_shell() {
 }
 
 #[test]
+fn the_manual_has_a_page_for_every_command() {
+    let folder = folder("manual");
+    check(&["manual", "--out", folder.to_str().expect("UTF-8")], 0);
+    let help = out(&check(&["--help"], 0));
+    let (_, commands) = help.split_once("Commands:\n").expect("a list of commands");
+    let commands: Vec<&str> = commands.lines().map_while(|line| line.split_whitespace().next()).collect();
+    assert!(commands.contains(&"check") && commands.len() > 10, "{commands:?}");
+    let page = |name: &str| fs::read_to_string(folder.join(name)).expect(name);
+    for command in commands.iter().filter(|command| **command != "help") {
+        let text = page(&format!("armgen-{command}.1"));
+        assert!(text.contains("Examples:") && text.contains(".SH OPTIONS"), "{command}: {text}");
+        assert!(page("armgen.1").contains(&format!("armgen\\-{command}(1)")), "armgen.1 does not name {command}");
+    }
+    assert_eq!(
+        fs::read_dir(&folder).expect("a folder").count(),
+        commands.len(),
+        "a page for each command but `help`, and its own"
+    );
+}
+
+#[test]
 fn help_has_examples() {
     for command in [
         "",
@@ -116,6 +137,7 @@ fn help_has_examples() {
         "page",
         "schema",
         "completions",
+        "manual",
     ] {
         let arguments: Vec<&str> = [command, "--help"].into_iter().filter(|a| !a.is_empty()).collect();
         let text = out(&check(&arguments, 0));

@@ -218,6 +218,8 @@ fn the_robot_follows_its_file_and_nothing_else() {
     }
     let scara = reference::description("scara");
     project.write("robot.yaml", &scara);
+    // As a checkout without links has it.
+    project.write("generated/robot.yaml", "../robot.yaml");
     project.write("notes.md", "Nothing.\n");
     let build = || project.built(&["--package", "armgen-generated"]).join("robot.rs");
     let text = |path: &Path| std::fs::read_to_string(path).expect("the emitted module");

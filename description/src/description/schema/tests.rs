@@ -255,9 +255,8 @@ fn slip(node: &mut Node, random: &mut Random) {
     };
 }
 
-/// 400 mutants: whatever armgen accepts the schema accepts, and it refuses at least half of the faulty ones.
-#[test]
-fn mutants() {
+/// 400 descriptions with a slip.
+fn mutated() -> Vec<Case> {
     let mut random = Random(42);
     let robots = robots();
     let mut cases = Vec::new();
@@ -270,9 +269,43 @@ fn mutants() {
     }
     let accepted = cases.iter().filter(|case| case.accepted).count();
     assert!((20..300).contains(&accepted), "{accepted}");
-    let Some((refused, faulty)) = compared(&cases) else { return };
+    cases
+}
+
+/// Whatever armgen accepts of 400 mutants the schema accepts, and it refuses at least half of the faulty ones.
+#[test]
+fn mutants() {
+    let Some((refused, faulty)) = compared(&mutated()) else { return };
     println!("of {faulty} faulty mutants the schema refuses {refused}");
     assert!(2 * refused >= faulty, "{refused} of {faulty}");
+}
+
+/// The same in an editor, and every description of the repository: yaml-language-server marks nothing that armgen accepts.
+#[test]
+#[ignore = "wide"]
+fn mutants_in_an_editor() {
+    if !installed::there("node", "nodejs") {
+        return;
+    }
+    if !installed::runs("sh", &["-c", "command -v yaml-language-server"]) {
+        return installed::left_out("no `yaml-language-server` here (npm install --global yaml-language-server)");
+    }
+    let cases: Vec<Case> = mutated().into_iter().chain(robots().into_iter().map(Case::of)).collect();
+    let script = concat!(env!("CARGO_MANIFEST_DIR"), "/src/description/schema/editor.mjs");
+    let mut node = Command::new("node").arg(script).stdin(Stdio::piped()).stdout(Stdio::piped()).spawn().expect("node runs");
+    let texts: Vec<&str> = cases.iter().map(|case| case.text.as_str()).collect();
+    let given = json!({ "schema": super::schema(), "texts": texts }).to_string();
+    node.stdin.take().expect("a pipe").write_all(given.as_bytes()).expect("node reads all");
+    let output = node.wait_with_output().expect("node ends");
+    let marked: Vec<bool> = serde_json::from_slice(&output.stdout).expect("a list of verdicts");
+    assert_eq!(marked.len(), cases.len());
+    for (case, marked) in cases.iter().zip(&marked) {
+        assert!(!marked || !case.accepted, "a false alarm in the editor:\n{}", case.text);
+    }
+    let faulty: Vec<bool> = cases.iter().zip(&marked).filter(|(case, _)| !case.accepted).map(|(_, marked)| *marked).collect();
+    let seen = faulty.iter().filter(|marked| **marked).count();
+    println!("of {} faulty texts the editor marks {seen}", faulty.len());
+    assert!(2 * seen >= faulty.len(), "{seen} of {}", faulty.len());
 }
 
 /// Texts of the grammar, one in two of them with a character changed: each that armgen reads fits the pattern.
