@@ -1,5 +1,6 @@
 //! Files that the documentation names are there.
 
+use std::collections::{BTreeMap, BTreeSet};
 use std::fs;
 use std::path::{Path, PathBuf};
 
@@ -102,4 +103,51 @@ fn files_of_tests_are_modules() {
         }
     }
     assert!(programs > 5, "{programs} crates have one program of tests: their form has changed");
+}
+
+/// The tables of a manifest whose heads begin with this, without comments.
+fn tables(manifest: &str, head: &str) -> BTreeMap<String, Vec<String>> {
+    let mut found = BTreeMap::new();
+    let mut open = None;
+    for line in manifest.lines().filter(|line| !line.is_empty() && !line.starts_with('#')) {
+        if line.starts_with('[') {
+            open = line.starts_with(head).then(|| line.to_owned());
+        }
+        if let Some(name) = &open {
+            found.entry(name.clone()).or_insert_with(Vec::new).extend((line != name).then(|| line.to_owned()));
+        }
+    }
+    found
+}
+
+/// Cargo compiles a dependency again where its profile or version differs. It compiles the crates of this repository for each workspace anyway.
+#[test]
+fn the_package_of_python_shares_compiled_crates() {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR")).parent().expect("in the workspace");
+    let read = |file: &str| fs::read_to_string(root.join(file)).expect("a text");
+    let (own, of_python) = ("Cargo.toml", "python/Cargo.toml");
+    let (own, of_python) = (tables(&read(own), "[profile.dev"), tables(&read(of_python), "[profile.dev"));
+    let versions = |lock: &str| -> BTreeMap<String, BTreeSet<String>> {
+        let mut found = BTreeMap::new();
+        for package in read(lock).split("[[package]]").skip(1) {
+            let value = |key: &str| package.lines().find_map(|line| line.strip_prefix(key)).expect("a key").to_owned();
+            found.entry(value("name = ")).or_insert_with(BTreeSet::new).insert(value("version = "));
+        }
+        found
+    };
+    let (versions, of_lock) = (versions("Cargo.lock"), versions("python/Cargo.lock"));
+    let ours = |head: &str| head.contains("package.armgen-");
+    let (own, of_python): (Vec<_>, Vec<_>) =
+        (own.iter().filter(|(head, _)| !ours(head)).collect(), of_python.iter().filter(|(head, _)| !ours(head)).collect());
+    let needed = |head: &str| {
+        let package = head.strip_prefix("[profile.dev.package.").and_then(|rest| rest.strip_suffix(']'));
+        package.is_none_or(|package| package == "\"*\"" || of_lock.contains_key(&format!("\"{package}\"")))
+    };
+    let own: Vec<_> = own.into_iter().filter(|(head, _)| needed(head)).collect();
+    assert!(own == of_python && own.len() > 10, "python/Cargo.toml: profiles of dependencies are not those of Cargo.toml");
+    for (name, locked) in of_lock {
+        if let Some(known) = versions.get(&name) {
+            assert!(locked.is_subset(known), "python/Cargo.lock: {name} {locked:?}, and Cargo.lock has {known:?}");
+        }
+    }
 }

@@ -105,7 +105,9 @@ pub(crate) fn check_torch_compile() {
     let Some(python) = python_that("import torch; torch.compile", "with torch 2 here") else { return };
     let (folder, _) = folder_of("languages_torch_compile");
     arms_in(&folder);
-    let own = "import torch
+    // torch 2.15 warns of calls of its own.
+    let own = "import torch, warnings
+warnings.filterwarnings('ignore', category=FutureWarning, module='torch')
 
 graphs = []
 
