@@ -6,7 +6,6 @@ use armgen_codegen::source::{Source, Span};
 
 use crate::body::{Body, ELEMENTS};
 use crate::chain::{Arm, Row};
-use crate::format::Motion;
 use crate::pose::{Pose, Turn};
 use crate::report::Report;
 use crate::written::Written;
@@ -69,8 +68,13 @@ fn joint(line: &mut impl FnMut(&str), source: &Source, arm: &Arm, row: &Row) {
     if let Some([low, high]) = &row.motion.position {
         limits.push(format!("position: [{}, {}]", low.text, high.text));
     }
-    let Motion { velocity, acceleration, jerk, effort, .. } = &row.motion;
-    let sizes = [("velocity", velocity), ("acceleration", acceleration), ("jerk", jerk), ("effort", effort)];
+    let motion = &row.motion;
+    let sizes = [
+        ("velocity", &motion.velocity),
+        ("acceleration", &motion.acceleration),
+        ("jerk", &motion.jerk),
+        ("effort", &motion.effort),
+    ];
     limits.extend(sizes.into_iter().filter_map(|(key, size)| Some(format!("{key}: {}", size.as_ref()?.text))));
     if !limits.is_empty() {
         line(&format!("    limits: {{{}}}", limits.join(", ")));
