@@ -12,7 +12,7 @@ use crate::Arguments;
 /// All pages: their paths from the root, and their texts.
 fn pages() -> BTreeMap<PathBuf, String> {
     let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("..").canonicalize().expect("the repository");
-    let folders = ["", "docs", "python", "benches", "benches/peers", "inverse-kinematics"];
+    let folders = ["", "docs", "docs/start", "python", "benches", "benches/peers", "inverse-kinematics"];
     let files = folders.iter().flat_map(|folder| fs::read_dir(root.join(folder)).expect("a folder").flatten());
     let pages = files.map(|file| file.path()).filter(|path| path.extension().is_some_and(|e| e == "md"));
     pages.map(|path| (path.clone(), fs::read_to_string(&path).expect("a page"))).collect()

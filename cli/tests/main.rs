@@ -5,3 +5,5 @@ mod commands;
 mod installed;
 mod languages;
 mod package;
+mod site;
+mod start;

@@ -60,10 +60,50 @@ fn the_files_of_a_package_name_it() {
     }
     let manifest = fs::read_to_string(package.join("package.xml")).expect("package.xml");
     assert!(manifest.contains("<maintainer email=\"ada@example.org\">Ada Lovelace</maintainer>"), "{manifest}");
-    for name in ["CMakeLists.txt", "package.xml", "README.md"] {
+    let sketch = "examples/gravity/gravity.ino";
+    for name in ["CMakeLists.txt", "package.xml", "README.md", "library.properties", "library.json", "src/ur5.h", sketch] {
         let text = fs::read_to_string(package.join(name)).expect("a file");
-        let holes = ["@NAME@", "@ROBOT@", "@MADE@", "@VERSION@", "@TESTS@", "@CALL@", "@MAIL@", "@DESCRIPTION@"];
+        let holes =
+            ["@NAME@", "@ROBOT@", "@MADE@", "@VERSION@", "@TESTS@", "@CALL@", "@MAIL@", "@DESCRIPTION@", "@UPPER@", "@GIVEN@"];
         assert!(holes.iter().all(|hole| !text.contains(hole)), "{name}: {text}");
+    }
+}
+
+/// The sketch and the header as a compiler of Arduino takes them, without a warning; under QEMU they have the bits of this machine.
+#[test]
+#[ignore = "wide"]
+fn the_library_of_arduino_has_the_same_bits_on_a_microcontroller() {
+    const COMPILERS: &str = "gcc-arm-none-eabi, libstdc++-arm-none-eabi-newlib";
+    let folder = folder("package_arduino");
+    for (name, text) in [
+        ("board.cpp", include_str!("arduino/board.cpp")),
+        ("start.c", include_str!("arduino/start.c")),
+        ("board.ld", include_str!("arduino/board.ld")),
+    ] {
+        fs::write(folder.join(name), text).expect("a file");
+    }
+    let options = "-std=gnu++11 -Wall -Wextra -Werror -I library/src -I library/examples/gravity board.cpp";
+    let board = "-mcpu=cortex-m4 -mthumb -mfloat-abi=hard -mfpu=fpv4-sp-d16 -O2";
+    let compile = |compiler: &str, options: &str| run(&folder, compiler, &options.split(' ').collect::<Vec<_>>());
+    let robot = root().join("robots/ur5.yaml").display().to_string();
+    check(&folder, &["generate", &robot, "--language", "c", "--package", "--scalar", "f32", "--out", "library"], 0);
+    let manifest = fs::read_to_string(folder.join("library/library.json")).expect("library.json");
+    let manifest: serde_json::Value = serde_json::from_str(&manifest).expect("JSON");
+    assert_eq!((&manifest["license"], &manifest["headers"]), (&"set me".into(), &"ur5.h".into()));
+    if !installed::there("g++", "g++") || !installed::there("arm-none-eabi-g++", COMPILERS) {
+        return;
+    }
+    compile("g++", &format!("{options} -o host"));
+    compile("arm-none-eabi-gcc", &format!("{board} -c start.c"));
+    compile(
+        "arm-none-eabi-g++",
+        &format!("{board} {options} -fno-exceptions start.o --specs=rdimon.specs -T board.ld -o board.elf"),
+    );
+    let here = run(&folder, &folder.join("host").display().to_string(), &[]);
+    assert!(here.starts_with("0 -59.17"), "{here}");
+    if installed::there("qemu-system-arm", "qemu-system-arm") {
+        let qemu = "-M mps2-an386 -nographic -semihosting-config enable=on,target=native -kernel board.elf";
+        assert_eq!(run(&folder, "qemu-system-arm", &qemu.split(' ').collect::<Vec<_>>()), here);
     }
 }
 
@@ -78,7 +118,7 @@ fn files_of_others_stay_whole() {
     assert!(said.contains("set me") && said.contains("--maintainer and --license"), "{said}");
     // What armgen has written may be written again.
     generate(0);
-    for name in ["CMakeLists.txt", "package.xml", "README.md"] {
+    for name in ["CMakeLists.txt", "package.xml", "README.md", "library.properties", "library.json", "src/scara.h"] {
         let file = folder.join("p").join(name);
         let text = fs::read_to_string(&file).expect("a file");
         fs::write(&file, "mine\n").expect("the file");
@@ -137,4 +177,23 @@ fn cmake_and_ament_build_the_package_and_a_project_with_it() {
     }
     let prefix = package("ament", "-DPython3_EXECUTABLE=/usr/bin/python3");
     assert!(prefix.join("share/ament_index/resource_index/packages/ur5_armgen").is_file());
+
+    // A workspace of the package and of a package that depends on it.
+    if !installed::runs("colcon", &["--help"]) {
+        return installed::left_out("no `colcon` here (Debian: python3-colcon-cmake, python3-colcon-ros)");
+    }
+    let workspace = folder.join("workspace");
+    let controller = workspace.join("src/controller");
+    fs::create_dir_all(&controller).expect("a folder");
+    generate(&workspace.join("src"), &page);
+    fs::copy(folder.join("main.c"), controller.join("main.c")).expect("main.c");
+    let lists = format!("{installed}install(TARGETS controller DESTINATION bin)\n");
+    fs::write(controller.join("CMakeLists.txt"), lists).expect("CMakeLists.txt");
+    let manifest = "<package format=\"3\"><name>controller</name><version>0.1.0</version><description>A controller</description>\
+        <maintainer email=\"ada@example.org\">Ada Lovelace</maintainer><license>MIT</license><buildtool_depend>cmake</buildtool_depend>\
+        <depend>ur5_armgen</depend><export><build_type>cmake</build_type></export></package>\n";
+    fs::write(controller.join("package.xml"), manifest).expect("package.xml");
+    run(&workspace, "colcon", &["build", "--cmake-args", "-DPython3_EXECUTABLE=/usr/bin/python3"]);
+    let built = workspace.join("install/controller/bin/controller").display().to_string();
+    assert_eq!(run(&folder, &built, &[]), block(&page, "text"));
 }

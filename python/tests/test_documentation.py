@@ -34,6 +34,16 @@ def test_the_tutorial(tmp_path, monkeypatch):
     assert abs(names["sagging"][-1] - names["q0"]).max() > 0.1
 
 
+def test_five_minutes(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "robots").symlink_to(ROOT / "robots")
+    names, count = {}, 0
+    for language, code in blocks(DOCS / "start" / "python.md"):
+        exec(compile(code, "start/python.md", "exec"), names)
+        count += 1
+    assert count >= 5 and (tmp_path / "ur5.html").stat().st_size > 100_000
+
+
 @pytest.mark.parametrize("notebook", sorted((DOCS / "notebooks").glob("*.ipynb")), ids=lambda path: path.stem)
 def test_the_notebook(notebook):
     nbformat, nbclient = pytest.importorskip("nbformat"), pytest.importorskip("nbclient")

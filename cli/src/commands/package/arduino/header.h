@@ -1,0 +1,3 @@
+/* @MADE@ */
+/* Where Arduino and PlatformIO look for the header. */
+#include "../include/@NAME@/@ROBOT@.h"
