@@ -171,10 +171,12 @@ Exit codes: 0 done, 1 the description is faulty or with --check a file differs,
     #[command(after_help = "Examples:
   armgen import robot.urdf --out robot.yaml
   armgen import robot.urdf --tip tool0 --lock finger_joint=0.04 --out robot.yaml
+  armgen import robot.urdf --tip left=left_hand --tip right=right_hand --out robot.yaml
   armgen import robot.urdf --snap 0 --report report.json > robot.yaml
   xacro robot.urdf.xacro | armgen import - --out robot.yaml
 
-The chain goes from the root, or --base, to the only tip that there is, or --tip. Fixed joints
+The chain goes from the root, or --base, to the only tip that there is, or --tip; of several tips
+the arm is all of their chains, and --all takes every joint that moves. Fixed joints
 become poses, and what hangs on a link beside the chain becomes part of it, exactly. 1.5708 is
 taken for pi/2; how far that can move the end effector and the torques stands in the head of the
 description. The format: docs/import.md.

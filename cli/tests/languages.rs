@@ -182,3 +182,48 @@ fn a_word_of_one_language_is_a_name_in_another() {
         assert!(folder.join(out).exists(), "{out}");
     }
 }
+
+/// The commands and the programs of the page about two arms, from its URDF.
+#[test]
+#[ignore = "wide"]
+fn two_arms_go_from_a_urdf_to_torques() {
+    let page = include_str!("../../docs/two-arms.md");
+    let folder = folder("two_arms");
+    fs::write(folder.join("two_arms.urdf"), include_str!("../../tests/data/trees/two_arms.urdf")).expect("the file");
+    let blocks = |kind: &str| -> Vec<&str> {
+        page.split(&format!("```{kind}\n")).skip(1).map(|rest| rest.split("```").next().expect("its end")).collect()
+    };
+    let commands: Vec<&str> = blocks("sh").into_iter().flat_map(str::lines).collect();
+    let own: Vec<Vec<&str>> =
+        commands.iter().filter_map(|line| Some(line.strip_prefix("armgen ")?.split(' ').collect())).collect();
+    assert_eq!(own.len(), 4, "{commands:?}");
+    own.iter().for_each(|arguments| _ = check(&folder, arguments, 0));
+    let description = fs::read_to_string(folder.join("two_arms.yaml")).expect("the description");
+    assert!(description.contains(blocks("yaml")[0]), "{description}");
+    let said = |command: &mut Command| {
+        let output = command.current_dir(&folder).output().ok()?;
+        assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+        Some(String::from_utf8_lossy(&output.stdout).into_owned())
+    };
+    fs::write(folder.join("caller.c"), blocks("c")[0]).expect("the file");
+    fs::write(folder.join("caller.py"), blocks("python")[0]).expect("the file");
+    let compiled = said(Command::new("cc").args(["-O2", "-Wall", "-Wextra", "-Werror", "caller.c", "-lm", "-o", "caller"]));
+    let Some(in_c) = compiled.and_then(|_| said(&mut Command::new(folder.join("caller")))) else {
+        println!("no compiler of C: apt install gcc");
+        return;
+    };
+    assert_eq!(in_c.lines().count(), 5, "{in_c}");
+    let has_numpy = Command::new("python3").args(["-c", "import numpy"]).output().is_ok_and(|output| output.status.success());
+    match has_numpy {
+        true => assert_eq!(said(Command::new("python3").arg("caller.py")), Some(in_c)),
+        false => println!("no NumPy: apt install python3-numpy"),
+    }
+    check(&folder, &["export", "two_arms.yaml", "--format", "urdf", "--out", "back.urdf"], 0);
+    check(&folder, &["import", "back.urdf", "--tip", "left=left_hand", "--tip", "right=right_hand", "--out", "back.yaml"], 0);
+    check(&folder, &["show", "back.yaml", "left_direct_kinematics", "right_operational_inertia"], 0);
+    check(&folder, &["count", "back.yaml"], 0);
+    check(&folder, &["check", "back.yaml"], 0);
+    check(&folder, &["page", "back.yaml", "--out", "back.html"], 0);
+    let said = check(&folder, &["generate", "back.yaml", "--out", "one.rs", "--functions", "direct_kinematics"], 1);
+    assert!(said.contains("left_direct_kinematics, right_direct_kinematics"), "{said}");
+}

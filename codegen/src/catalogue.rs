@@ -6,9 +6,10 @@ pub use crate::derive::model::Sizes;
 pub use crate::derive::parameters::Parameter;
 pub use crate::derive::quantities;
 pub use crate::derive::quantity::{
-    Absent, Argument, DerivationInput, Documentation, Element, Length, Quantity, Recursion, ResultPart, Structure, Typeset,
+    Absent, Argument, DerivationInput, Documentation, Element, Length, Of, Quantity, Recursion, ResultPart, Structure, Typeset,
 };
 
+use crate::manipulator::Tip;
 use quantities::DECLARED;
 
 /// All quantities.
@@ -19,6 +20,27 @@ pub fn quantities() -> impl Iterator<Item = &'static Quantity> + Clone {
 /// All functions: each quantity, and whether it is the form with parameters at run time.
 pub fn functions() -> impl Iterator<Item = (&'static Quantity, bool)> + Clone {
     quantities().flat_map(|quantity| quantity.forms().iter().map(move |&with| (quantity, with)))
+}
+
+/// All quantities of a robot with these named end effectors, none where its end effector has no name.
+pub fn quantities_of(tips: &[Tip]) -> impl Iterator<Item = &'static Quantity> + Clone + use<'_> {
+    quantities().flat_map(move |quantity| {
+        let named = quantity.recursion.of == Of::EndEffector && !tips.is_empty();
+        let once = (!named).then_some(quantity);
+        let of_tips = tips.iter().enumerate().filter(move |_| named).map(move |(number, tip)| quantity.of_tip(number, tip));
+        once.into_iter().chain(of_tips)
+    })
+}
+
+/// All functions of a robot with these named end effectors: each quantity, and whether it is the form with parameters at run time.
+pub fn functions_of(tips: &[Tip]) -> impl Iterator<Item = (&'static Quantity, bool)> + Clone + use<'_> {
+    quantities_of(tips).flat_map(|quantity| quantity.forms().iter().map(move |&with| (quantity, with)))
+}
+
+/// Whether a name can be that of a function of a named end effector.
+pub fn can_be_of_a_tip(name: &str) -> bool {
+    let ends = |quantity: &Quantity| name.strip_suffix(quantity.name).is_some_and(|tip| tip.len() > 1 && tip.ends_with('_'));
+    quantities().any(|quantity| quantity.recursion.of == Of::EndEffector && ends(quantity))
 }
 
 /// The function of a name.

@@ -60,10 +60,13 @@ fn check(manipulator: &Manipulator, places: &Places, diagnostics: &mut Diagnosti
     }
     let mut pool = Pool::new(field.clone());
     let arm = Arm::new(&mut pool, manipulator, View::Nominal);
-    if places.task.is_some() {
+    for (tip, place) in places.tasks.iter().enumerate() {
+        let Some(place) = *place else { continue };
+        let of_tip = if manipulator.tips.is_empty() { manipulator.clone() } else { manipulator.at(tip) };
+        let arm = Arm::new(&mut pool, &of_tip, View::Nominal);
         let jacobian = kinematics::geometric_jacobian(&mut pool, &arm);
-        if manipulator.task.iter().all(|row| jacobian[row.index()].iter().all(|&e| e == ExprId::ZERO)) {
-            found.push(immovable_task(manipulator, places));
+        if of_tip.task.iter().all(|row| jacobian[row.index()].iter().all(|&e| e == ExprId::ZERO)) {
+            found.push(Some(immovable_task(&of_tip, place)));
         }
     }
     if manipulator.is_massless() {
@@ -189,13 +192,12 @@ fn nonlinear(
     Some(diagnostic)
 }
 
-/// No joint moves any row of the task. `None` if the file writes no task.
-fn immovable_task(manipulator: &Manipulator, places: &Places) -> Option<Diagnostic> {
-    let span = places.task_rows.iter().copied().reduce(Span::to).or(places.task)?;
+/// No joint moves any row of the task, which the file writes at `span`.
+fn immovable_task(manipulator: &Manipulator, span: Span) -> Diagnostic {
     let rows: Vec<&str> = manipulator.task.iter().map(|row| row.name()).collect();
     let message = format!("no joint moves any row of the task ({})", rows.join(", "));
     let help = "name rows that the arm can move: x y z are along, rx ry rz about the axes of the base frame";
-    Some(Diagnostic::new(Code::ImmovableTask, span, message, "zero for every q", help))
+    Diagnostic::new(Code::ImmovableTask, span, message, "zero for every q", help)
 }
 
 /// Nothing in the arm has mass or inertia.

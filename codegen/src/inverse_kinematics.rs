@@ -93,6 +93,12 @@ pub enum Construction {
 
 /// How all solutions of an arm are found, or why there is no function for that.
 pub fn of(manipulator: &Manipulator) -> Result<InverseKinematics, String> {
+    if !manipulator.tips.is_empty() {
+        return Err(
+            "it is not solved yet for an arm with several end effectors: describe the chain to one of them as an arm of its own"
+                .into(),
+        );
+    }
     let chain = Chain::of(manipulator)?;
     let length = size(&chain);
     let given = manipulator.inverse_kinematics.given;

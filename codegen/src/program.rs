@@ -176,6 +176,24 @@ pub struct Joint {
     pub jerk: Option<Number>,
 }
 
+/// A named end effector of the emitted module.
+#[derive(Clone, Debug)]
+pub struct EndEffector {
+    /// Its name.
+    pub name: String,
+    /// Rows of its task in its geometric Jacobian.
+    pub task: Vec<usize>,
+    /// The joints that move it, by their indices, from the base on.
+    pub coordinates: Vec<usize>,
+}
+
+impl EndEffector {
+    /// The name of one of its constants: `LEFT_TASK` of `TASK`.
+    pub fn constant(&self, name: &str) -> String {
+        format!("{}_{name}", self.name.to_ascii_uppercase())
+    }
+}
+
 /// All that the emitted module holds.
 #[derive(Clone, Debug)]
 pub struct Module {
@@ -197,6 +215,8 @@ pub struct Module {
     pub has_load_friction: bool,
     /// Rows of the task in the geometric Jacobian.
     pub task: Vec<usize>,
+    /// The end effectors with names; none where there is one without a name.
+    pub tips: Vec<EndEffector>,
     /// Parameters.
     pub parameters: Vec<Parameter>,
     /// Whether the parameters are a base set: combinations in joint frames.

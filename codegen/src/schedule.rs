@@ -15,7 +15,7 @@ use crate::manipulator;
 use crate::parallel::parallel_map;
 
 pub use crate::pass::{Pass, Passes};
-use crate::program::{Cost, Function, Joint, Module, Operand, Operation, Output, Step, Trig};
+use crate::program::{Cost, EndEffector, Function, Joint, Module, Operand, Operation, Output, Step, Trig};
 use crate::ring::count::DIVISION_COST;
 use crate::ring::{ExprId, Node, Pool, Symbol};
 use crate::Model;
@@ -47,16 +47,17 @@ const EFFORT: usize = 500_000;
 /// The module of an arm.
 pub fn module(model: &Model, options: &Options) -> Module {
     let (mut wanted, mut absent) = (Vec::new(), Vec::new());
-    for (quantity, with_parameters) in catalogue::functions() {
+    for (quantity, with_parameters) in catalogue::functions_of(&model.manipulator.tips) {
         if !options.functions.contains(quantity, with_parameters) {
             continue;
         }
-        match (quantity.missing)(model, with_parameters) {
+        match quantity.absence(model, with_parameters) {
             Some(_) if !quantity.documentation.said_missing && options.functions.is_all() => {}
             Some(reason) => absent.push(Absent { function: quantity.function_name(with_parameters), reason }),
             None => wanted.push((quantity, with_parameters)),
         }
     }
+    absent.extend(options.functions.unknown_to(&model.manipulator.tips));
     let functions = parallel_map(&wanted, |&(quantity, with_parameters)| function(model, quantity, with_parameters, options));
     let base = wanted.iter().any(|(quantity, _)| quantity.has_length(Length::BaseParameters));
     let manipulator = &model.manipulator;
@@ -70,6 +71,7 @@ pub fn module(model: &Model, options: &Options) -> Module {
         has_stribeck: manipulator.has_stribeck(),
         has_load_friction: manipulator.has_load_friction(),
         task: manipulator.task_rows(),
+        tips: manipulator.tips.iter().map(|tip| end_effector(manipulator, tip)).collect(),
         parameters: model.parameters.entries.clone(),
         base_parameters: matches!(model.parameters.kind, ParameterKind::Base(_)),
         base_set: if base { model.base_parameters().entries.clone() } else { Vec::new() },
@@ -81,6 +83,14 @@ pub fn module(model: &Model, options: &Options) -> Module {
         batch: options.batch.filter(|&lanes| lanes > 0),
         asked_for: options.functions.names().map(|names| names.map(String::from).collect()),
         without: Pass::ALL.into_iter().filter(|pass| options.without.contains(*pass)).map(Pass::name).collect(),
+    }
+}
+
+fn end_effector(manipulator: &manipulator::Manipulator, tip: &manipulator::Tip) -> EndEffector {
+    EndEffector {
+        name: tip.name.clone(),
+        task: tip.task.iter().map(|row| row.index()).collect(),
+        coordinates: manipulator.path_to(tip.joint.index()),
     }
 }
 

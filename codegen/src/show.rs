@@ -172,7 +172,7 @@ impl Sheet {
     fn of(model: &Model, items: &[Item], all: Vec<Result<Vec<Shown>, String>>) -> Sheet {
         let mut seen = BTreeSet::new();
         let mut sheet = Sheet { robot: model.manipulator.name.clone(), quantities: Vec::new(), absent: Vec::new() };
-        let everything = items == Item::all();
+        let everything = items == Item::all(&model.manipulator.tips);
         for (item, shown) in items.iter().zip(all) {
             match shown {
                 Ok(all) => sheet.quantities.extend(all.into_iter().filter(|shown| seen.insert(shown.name.clone()))),

@@ -70,6 +70,8 @@ pub struct RobotDescription {
     pub regressor: Option<Spanned<RegressorDescription>>,
     /// The choices for inverse kinematics.
     pub inverse_kinematics: PosturesDescription,
+    /// Named end effectors, instead of the keys for a single one. The span is the key's.
+    pub tips: Option<Spanned<Vec<TipDescription>>>,
     /// Kinds of warnings that the file accepts.
     pub allow: Vec<Spanned<String>>,
 }
@@ -301,6 +303,23 @@ pub enum RotationDescription {
     AxisAngle(Spanned<[Value; 3]>, Expression),
     /// The directions of the x and y axes, the second made perpendicular to the first.
     XyAxes(Spanned<[Value; 6]>),
+}
+
+/// A named end effector.
+#[derive(Clone, Debug)]
+pub struct TipDescription {
+    /// Its name.
+    pub name: Option<Spanned<String>>,
+    /// The joint whose link carries it.
+    pub joint: Option<Spanned<String>>,
+    /// Its frame in that link's frame.
+    pub tool: Option<PoseDescription>,
+    /// Load in its frame.
+    pub payload: Option<BodyDescription>,
+    /// Rows of its operational space; those that exist. The span is the key's.
+    pub task: Option<Spanned<Vec<Spanned<TaskRow>>>>,
+    /// The choices for its inverse kinematics.
+    pub inverse_kinematics: PosturesDescription,
 }
 
 /// The choices for inverse kinematics.

@@ -202,8 +202,16 @@ codes! {
         LateParent Error "late-parent",
         /// `mount` beside no `parent`.
         MountWithoutParent Error "mount-without-parent",
-        /// `tip` names no joint.
+        /// `tip`, or `joint` of an end effector, names no joint.
         UnknownTipJoint Error "unknown-tip-joint",
+        /// Two end effectors of one name.
+        DuplicateTip Error "duplicate-tip",
+        /// More end effectors than a robot may have.
+        TooManyTips Error "too-many-tips",
+        /// An end effector's name makes names of the module that are taken.
+        NameTaken Error "name-taken",
+        /// A key of a single end effector beside `tips`.
+        TipsBesideTool Error "tips-beside-tool",
         /// A mass below 0.
         NegativeMass Error "negative-mass",
         /// An inertia tensor that is not positive semidefinite.
@@ -253,6 +261,8 @@ codes! {
         UnknownWarning Error "unknown-warning",
 
         // Warnings.
+        /// An arm with branches whose file names no end effector.
+        OneTip Warning "one-tip",
         /// Principal moments that no body has.
         TriangleInequality Warning "triangle-inequality",
         /// A tensor that no body has, taken as written since the file allows it.

@@ -7,6 +7,9 @@ use armgen_algebra::ring::AngleSum;
 /// Equations and emitted code grow with the number of joints; an arm of more than this is a mistake.
 pub const MAX_JOINTS: usize = AngleSum::MOST_JOINTS;
 
+/// Most end effectors with names.
+pub const MAX_TIPS: usize = 8;
+
 /// The floating-point type of the emitted code; its range bounds the numbers of a description.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Scalar {

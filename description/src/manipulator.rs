@@ -22,6 +22,25 @@ use crate::kinds::{JointKind, ParameterId, TaskRow};
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct LinkId(pub u32);
 
+impl LinkId {
+    /// As an index.
+    pub fn index(self) -> usize {
+        self.0 as usize
+    }
+}
+
+impl Tip {
+    /// The beginning of the names of its functions, with the underscore: of `left` it is `left_`.
+    pub fn prefix(&self) -> String {
+        self.name.to_ascii_lowercase() + "_"
+    }
+
+    /// The name of one of its constants: `LEFT_TASK` of `TASK`.
+    pub fn constant(&self, name: &str) -> String {
+        format!("{}_{name}", self.name.to_ascii_uppercase())
+    }
+}
+
 /// The choices of the description under `inverse_kinematics`.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Postures {
@@ -38,6 +57,38 @@ pub enum GivenBeside {
     Joint(LinkId),
     /// The swivel angle of the elbow about the line from shoulder to wrist.
     Swivel,
+}
+
+/// An end effector with a name, of an arm that has several.
+#[derive(Clone, Debug)]
+pub struct Tip {
+    /// Its name: an identifier.
+    pub name: String,
+    /// The link that carries it.
+    pub joint: LinkId,
+    /// Its frame in that link's frame.
+    pub tool: Pose,
+    /// Rigid load, in its frame.
+    pub payload: Option<PlacedBody>,
+    /// Rows of its operational space, in the order of the file.
+    pub task: Vec<TaskRow>,
+    /// The choices of the description under its `inverse_kinematics`.
+    pub inverse_kinematics: Postures,
+}
+
+/// A rigid load of an end effector.
+#[derive(Clone, Copy, Debug)]
+pub struct Load<'a> {
+    /// The end effector's name; `None` where it has no name.
+    pub of: Option<&'a str>,
+    /// The place of the end effector among all of them.
+    pub end: usize,
+    /// The index of the link that carries the end effector.
+    pub link: usize,
+    /// The end effector's frame in that link's frame.
+    pub tool: &'a Pose,
+    /// The load, in that frame.
+    pub body: &'a PlacedBody,
 }
 
 /// A valid robot arm.
@@ -57,7 +108,7 @@ pub struct Manipulator {
     pub tip: LinkId,
     /// End-effector frame in the tip's link frame.
     pub tool: Pose,
-    /// Rigid load, in the end-effector frame.
+    /// Rigid load, in the end-effector frame, of an arm whose end effector has no name.
     pub payload: Option<PlacedBody>,
     /// Rows of the operational space, in the order of the file.
     pub task: Vec<TaskRow>,
@@ -65,6 +116,9 @@ pub struct Manipulator {
     pub regressor: RegressorChoice,
     /// The choices of the description under `inverse_kinematics`.
     pub inverse_kinematics: Postures,
+    /// The end effectors with names, in the order of the file; none where there is one end effector without a name.
+    /// `tip`, `tool`, `task` and `inverse_kinematics` are then those of the first one, or of the one that [`Manipulator::at`] chose.
+    pub tips: Vec<Tip>,
 }
 
 /// A named quantity of the file.
@@ -235,12 +289,70 @@ pub enum RegressorChoice {
 impl Manipulator {
     /// Whether nothing that moves has mass or inertia, whatever the parameters: there are no equations of motion.
     pub fn is_massless(&self) -> bool {
-        let bodies = self.joints.iter().flat_map(|joint| &joint.link).chain(&self.payload);
+        let bodies = self.joints.iter().flat_map(|joint| &joint.link).chain(self.loads().into_iter().map(|load| load.body));
         let motors = self.joints.iter().filter_map(|joint| joint.motor.as_ref());
         let of_bodies = bodies.flat_map(|body| body.given.inertia.iter().chain([&body.given.mass]));
         let of_motors = motors.flat_map(|motor| motor.inertia.iter().chain([&motor.mass]));
         let of_joints = self.joints.iter().filter_map(|joint| joint.armature.as_ref());
         of_bodies.chain(of_motors).chain(of_joints).all(Polynomial::is_zero)
+    }
+
+    /// The same arm with one of its named end effectors as the one that its equations are of.
+    #[must_use]
+    pub fn at(&self, tip: usize) -> Manipulator {
+        let chosen = self.tips[tip].clone();
+        Manipulator {
+            tip: chosen.joint,
+            tool: chosen.tool,
+            task: chosen.task,
+            inverse_kinematics: chosen.inverse_kinematics,
+            ..self.clone()
+        }
+    }
+
+    /// The same arm with its first named end effector as the only one, without a name: for what knows one end effector. The payloads of the
+    /// others are bodies of their links.
+    #[must_use]
+    pub fn with_one_end_effector(&self) -> Manipulator {
+        let mut arm = self.clone();
+        let tips = std::mem::take(&mut arm.tips);
+        for (number, tip) in tips.into_iter().enumerate() {
+            let Some(load) = tip.payload else { continue };
+            if number == 0 {
+                arm.payload = Some(load);
+                continue;
+            }
+            let elements = tip.tool.elements.into_iter().chain(load.frame.elements);
+            let body = PlacedBody::new(Pose::new(elements.collect()), load.axes, load.given);
+            arm.joints[tip.joint.index()].link.push(body);
+        }
+        arm
+    }
+
+    /// The loads of all end effectors.
+    pub fn loads(&self) -> Vec<Load<'_>> {
+        let own = self.payload.iter().map(|body| Load { of: None, end: 0, link: self.tip.index(), tool: &self.tool, body });
+        let named = self.tips.iter().enumerate().filter_map(|(end, tip)| {
+            let body = tip.payload.as_ref()?;
+            Some(Load { of: Some(&tip.name), end, link: tip.joint.index(), tool: &tip.tool, body })
+        });
+        own.chain(named).collect()
+    }
+
+    /// The frames of all end effectors, each in the frame of the link that carries it, which is given by its index.
+    pub fn ends(&self) -> Vec<(usize, &Pose)> {
+        if self.tips.is_empty() {
+            return vec![(self.tip.index(), &self.tool)];
+        }
+        self.tips.iter().map(|tip| (tip.joint.index(), &tip.tool)).collect()
+    }
+
+    /// The joints that move a link, by their indices, from the base on.
+    pub fn path_to(&self, link: usize) -> Vec<usize> {
+        let parent = |&i: &usize| self.joints[i].parent.map(LinkId::index);
+        let mut path: Vec<usize> = std::iter::successors(Some(link), parent).collect();
+        path.reverse();
+        path
     }
 
     /// Whether joints have springs.
@@ -271,7 +383,7 @@ impl Manipulator {
 
     /// The joint that carries each one, by its index.
     pub fn parents(&self) -> impl Iterator<Item = Option<usize>> + '_ {
-        self.joints.iter().map(|joint| joint.parent.map(|parent| parent.0 as usize))
+        self.joints.iter().map(|joint| joint.parent.map(LinkId::index))
     }
 
     /// Whether the joints are no single chain, each on the link of the joint before it.

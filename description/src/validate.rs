@@ -11,7 +11,7 @@
 //! bodies.rs      mass, centre of mass, inertia: no impossible body
 //! parents.rs     the tree of links, and where rows start
 //! joints.rs      limits, motor, friction
-//! choices.rs     task, regressor
+//! choices.rs     end effectors, task, regressor
 //! places.rs      where things stand, for what is found out later
 //! plausible.rs   values that can be, but hardly are meant
 //! allow.rs       warnings that the file allows
@@ -129,13 +129,15 @@ fn validate(
     let joints = joints(description, &mut context);
     let tool = geometry::pose(description.tool.as_ref(), "the tool", &mut context);
     let payload = description.payload.as_ref().map(|p| bodies::part(p, Some(Pose::identity()), "the payload", &mut context));
+    let tips = choices::tips(description, &mut context);
     let tip = choices::tip(description, context.diagnostics);
-    let task = choices::task(description, context.diagnostics);
+    let task = choices::task(description.task.as_ref(), context.diagnostics);
     let regressor = choices::regressor(description, &mut context);
     if let (Some(gravity), Some(regressor)) = (&gravity, &regressor) {
         choices::gravity_argument(description, gravity, regressor, &mut context);
     }
-    let inverse_kinematics = choices::inverse_kinematics(description, context.diagnostics);
+    let described = description.joints.as_ref().map_or(&[][..], |joints| &joints.value);
+    let inverse_kinematics = choices::inverse_kinematics(&description.inverse_kinematics, described, context.diagnostics);
     bodies::warn_of_planar(&mut context);
     // An unreadable expression may use any name.
     if complete {
@@ -144,11 +146,18 @@ fn validate(
     if context.diagnostics.has_errors() {
         return None;
     }
-    let (mut joints, tool, tip) = (joints?, tool?, tip?);
-    let parents: Vec<Option<usize>> = joints.iter().map(|joint| joint.parent.map(|parent| parent.0 as usize)).collect();
-    plausible::check(description, &parents, tip, &mut context);
+    let (mut joints, tool, tip, tips) = (joints?, tool?, tip?, tips?);
+    let parents: Vec<Option<usize>> = joints.iter().map(|joint| joint.parent.map(|parent| parent.index())).collect();
+    let bare = [(tip.index(), description.tool.as_ref())];
+    let named = description.tips.iter().flat_map(|described| tips.iter().zip(&described.value));
+    let named: Vec<_> = named.map(|(tip, described)| (tip.joint.index(), described.tool.as_ref())).collect();
+    plausible::check(description, &parents, if named.is_empty() { &bare } else { &named }, &mut context);
     let symbols = context.evaluator.parameters.symbols();
-    frames::lay(&mut joints, tip, &tool, convention == Some(Convention::Urdf), &symbols);
+    let ends: Vec<_> = match tips.as_slice() {
+        [] => vec![(tip.index(), &tool)],
+        tips => tips.iter().map(|tip| (tip.joint.index(), &tip.tool)).collect(),
+    };
+    frames::lay(&mut joints, &ends, convention == Some(Convention::Urdf), &symbols);
     let places = places::gather(description, context.evaluator.parameters.places_of_symbols());
     let mut manipulator = Manipulator {
         name: description.name.as_ref()?.value.clone(),
@@ -165,7 +174,11 @@ fn validate(
         task,
         regressor: regressor?,
         inverse_kinematics,
+        tips,
     };
+    if !manipulator.tips.is_empty() {
+        manipulator = manipulator.at(0);
+    }
     if manipulator.is_massless() {
         // There are no torques that a regressor could be of.
         manipulator.regressor = RegressorChoice::Names(Vec::new());

@@ -131,6 +131,7 @@ impl Arm {
         if given.is_massless() {
             return None;
         }
+        let given = &given.with_one_end_effector();
         let mut manipulator = given.clone();
         manipulator.regressor = RegressorChoice::Base;
         manipulator.payload = None;
@@ -178,11 +179,11 @@ impl Arm {
         let links = (0..joints.len())
             .map(|i| {
                 let bodies = &given.joints[i].link;
-                let next = given.joints.iter().position(|joint| joint.parent.is_some_and(|parent| parent.0 as usize == i));
+                let next = given.joints.iter().position(|joint| joint.parent.is_some_and(|parent| parent.index() == i));
                 let joint_frame = given.joints[i].link_frame.inverse();
                 let end = match next {
                     Some(next) => translation(&joint_frame.then(&given.joints[next].placement).translation),
-                    None if given.tip.0 as usize == i => translation(&given.tool.frame.translation),
+                    None if given.tip.index() == i => translation(&given.tool.frame.translation),
                     None => Vector3::zeros(),
                 };
                 let axes = bodies.first().map(|body| &body.axes.frame.rotation);
@@ -231,7 +232,7 @@ impl Arm {
                 })
                 .collect::<Vec<_>>(),
         );
-        let tip = given.tip.0 as usize;
+        let tip = given.tip.index();
         let load = combination.columns(10 * tip, 10) * carried;
         Some(Arm {
             name: given.name.clone(),

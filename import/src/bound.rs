@@ -120,21 +120,25 @@ pub(crate) fn of(arm: &Arm) -> Bound {
     if arm.snap.snapped.is_empty() {
         return Bound::default();
     }
-    let tool = way(&arm.tool);
     let ways: Vec<Way> = arm.rows.iter().map(|row| way(&row.origin)).collect();
     let boxes: Vec<(f64, f64)> = arm.rows.iter().map(box_of).collect();
     let slide = |j: usize| if arm.rows[j].prismatic { boxes[j].0 } else { 0.0 };
-    let (mut flange, mut orientation, mut rest) = (tool.moved, tool.turned, tool.length);
-    for j in (0..arm.rows.len()).rev() {
-        let eta = arm.rows[j].motion.axis_offset;
-        // A slide along an axis that points elsewhere turns nothing.
-        let turned = ways[j].turned + if arm.rows[j].prismatic { 0.0 } else { 2.0 * eta };
-        flange += ways[j].turned * slide(j) + turned * rest + eta * slide(j) + ways[j].moved;
-        orientation += turned;
-        rest += ways[j].length + slide(j);
+    let (mut farthest, mut most_turned) = (0.0f64, 0.0f64);
+    for end in &arm.ends {
+        let tool = way(&end.tool);
+        let (mut flange, mut orientation, mut rest) = (tool.moved, tool.turned, tool.length);
+        for j in std::iter::successors(Some(end.row), |&j| arm.rows[j].parent) {
+            let eta = arm.rows[j].motion.axis_offset;
+            // A slide along an axis that points elsewhere turns nothing.
+            let turned = ways[j].turned + if arm.rows[j].prismatic { 0.0 } else { 2.0 * eta };
+            flange += ways[j].turned * slide(j) + turned * rest + eta * slide(j) + ways[j].moved;
+            orientation += turned;
+            rest += ways[j].length + slide(j);
+        }
+        (farthest, most_turned) = (farthest.max(flange), most_turned.max(orientation));
     }
     let (joint, torque) = torque(arm, &ways, &boxes);
-    Bound { flange: flange * UP, orientation: orientation * UP, torque: torque * UP, joint }
+    Bound { flange: farthest * UP, orientation: most_turned * UP, torque: torque * UP, joint }
 }
 
 /// By how much of its angle snapping turned the whole arm about z of the base alone, along which gravity points.
@@ -190,14 +194,16 @@ fn differences(arm: &Arm, ways: &[Way], boxes: &[(f64, f64)], step: Step, axes: 
     let n = arm.rows.len();
     let when = |now: bool, offset: f64| if now { offset } else { 0.0 };
     let gravity_turned = when(step == Step::Bodies, arm.gravity_offset);
-    let (mut w, mut dw, mut a) =
-        (Pair::default(), Pair::default(), Pair::new(arm.gravity_size, arm.gravity_size * gravity_turned));
+    let falling = Pair::new(arm.gravity_size, arm.gravity_size * gravity_turned);
     let (mut forces, mut moments) = (vec![Pair::default(); n], vec![Pair::default(); n]);
-    // By how much the axes in which vectors are written see link j turned: those of the link itself do not.
-    let mut link = 0.0;
+    // Of each link its rates, its acceleration, and by how much the axes in which vectors are written see it turned: those of the link itself
+    // do not.
+    let mut links: Vec<(Pair, Pair, Pair, f64)> = Vec::new();
     // By how much link j - 1 sees link j turned, its lever, and by how much the axis of joint j is turned.
     let mut passed = Vec::new();
     for (j, row) in arm.rows.iter().enumerate() {
+        let base = (Pair::default(), Pair::default(), falling, 0.0);
+        let (mut w, mut dw, mut a, mut link) = row.parent.map_or(base, |parent| links[parent]);
         let ((q, dq), eta) = (boxes[j], when(step == Step::Axis(j), row.motion.axis_offset));
         let origin = step == Step::Origin(j);
         let turned = when(origin, ways[j].turned);
@@ -225,6 +231,7 @@ fn differences(arm: &Arm, ways: &[Way], boxes: &[(f64, f64)], step: Step, axes: 
             dw = dw.plus(change).plus(w.times(rate));
             w = w.plus(rate);
         }
+        links.push((w, dw, a, link));
         let attached = row.attached.iter().map(|other| mass(&other.body, way(&other.origin)));
         for Mass { m, com, inertia } in row.body.iter().map(|body| mass(body, Way::default())).chain(attached) {
             let in_link = |of: Pair| Pair::new(of.size, when(step == Step::Bodies, of.apart));
@@ -241,10 +248,10 @@ fn differences(arm: &Arm, ways: &[Way], boxes: &[(f64, f64)], step: Step, axes: 
         let (seen, lever, axis) = passed[j];
         let felt = if arm.rows[j].prismatic { forces[j] } else { moments[j] };
         changes[j] = felt.apart + axis * felt.size;
-        if j > 0 {
+        if let Some(parent) = arm.rows[j].parent {
             let force = forces[j].turned(seen);
-            forces[j - 1] = forces[j - 1].plus(force);
-            moments[j - 1] = moments[j - 1].plus(moments[j].turned(seen)).plus(lever.times(force));
+            forces[parent] = forces[parent].plus(force);
+            moments[parent] = moments[parent].plus(moments[j].turned(seen)).plus(lever.times(force));
         }
     }
     changes

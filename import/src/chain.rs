@@ -1,4 +1,4 @@
-//! From base to tip: the moving joints, the poses between them, and the bodies of each link.
+//! From the base to the tips: the moving joints, the poses between them, and the bodies of each link.
 //!
 //! A fixed or locked joint is one more pose; branches that hang on a moving link are attached to it. Nothing is multiplied out here.
 
@@ -28,6 +28,8 @@ pub(crate) use locks::Lock;
 
 /// Poses in one list of robot.yaml.
 const MAX_POSES: usize = 60;
+/// Characters of the name of an end effector, before a number.
+const LONGEST_TIP: usize = 28;
 /// Bodies of an arm: beyond, robot.yaml would be longer than may be read.
 const MAX_BODIES: usize = 1000;
 
@@ -53,6 +55,8 @@ pub(crate) struct Row {
     pub(crate) prismatic: bool,
     pub(crate) origin: Vec<Pose>,
     pub(crate) motion: Motion,
+    /// The row whose link carries it; `None` for the base.
+    pub(crate) parent: Option<usize>,
     /// The link's own body, if the file gives it one.
     pub(crate) body: Option<Body>,
     pub(crate) attached: Vec<Attached>,
@@ -60,13 +64,26 @@ pub(crate) struct Row {
     unreadable: bool,
 }
 
-/// The chain.
+/// An end effector.
+#[derive(Debug)]
+pub(crate) struct End {
+    /// Its name; `None` for the only one of an arm.
+    pub(crate) name: Option<String>,
+    /// In the file.
+    pub(crate) link: String,
+    /// The row whose link carries it.
+    pub(crate) row: usize,
+    /// Its frame in that link's.
+    pub(crate) tool: Vec<Pose>,
+}
+
+/// The chains.
 #[derive(Debug)]
 pub(crate) struct Arm {
     pub(crate) name: String,
     pub(crate) robot: String,
     pub(crate) base: String,
-    pub(crate) tip: String,
+    pub(crate) ends: Vec<End>,
     pub(crate) gravity: [String; 3],
     /// Whether these are rounded.
     pub(crate) gravity_rounded: bool,
@@ -74,7 +91,6 @@ pub(crate) struct Arm {
     pub(crate) gravity_size: f64,
     pub(crate) gravity_offset: f64,
     pub(crate) rows: Vec<Row>,
-    pub(crate) tool: Vec<Pose>,
     pub(crate) snap: Snap,
     pub(crate) locked: Vec<Lock>,
     /// Links that were given no mass distribution and are taken to have mass 0.
@@ -139,24 +155,30 @@ pub(crate) fn arm(
         Some(base) => base,
         None => tree.only_root(diagnostics)?,
     };
-    let tip = named_link(tree, options.tip.as_deref(), "--tip", diagnostics)?;
-    let (tip, notes) = match tip {
-        Some(tip) => (tip, Vec::new()),
-        None => tips::only(tree, base, &locks, diagnostics)?,
-    };
-    let Some(path) = tree.path(base, tip) else {
-        let (from, to) = (&tree.links[base].name, &tree.links[tip].name);
-        let message = format!("the link `{}` is not below `{}`", shown(to), shown(from));
-        let way = tips::way_up(tree, tip);
-        let below = format!("a link below `{}` as `--tip`", shown(from));
-        let help = match way {
-            Some(way) => format!("above it are {way}: take one of them as `--base`, or {below}"),
-            None => format!("it hangs on nothing: take {below}"),
+    let mut notes = Vec::new();
+    let mut tips: Vec<(Option<&str>, usize)> = Vec::new();
+    for (name, link) in &options.tips {
+        tips.push((name.as_deref().or(Some(link)), named_link(tree, Some(link), "--tip", diagnostics)??));
+    }
+    if options.all {
+        let (all, noted) = tips::all(tree, base, &locks, diagnostics)?;
+        tips.extend(all.into_iter().map(|link| (Some(tree.links[link].name.as_str()), link)));
+        notes = noted;
+    }
+    if tips.is_empty() {
+        let tip = named_link(tree, options.tip.as_deref(), "--tip", diagnostics)?;
+        let (tip, noted) = match tip {
+            Some(tip) => (tip, Vec::new()),
+            None => tips::only(tree, base, &locks, diagnostics)?,
         };
-        let fault = Diagnostic::new(Code::NotBelow, tree.links[tip].span, message, "this is to be the tip", help);
-        diagnostics.push(fault.also(tree.links[base].span, "this is to be the base"));
-        return None;
-    };
+        (tips, notes) = (vec![(None, tip)], noted);
+    }
+    let mut path: Vec<usize> = Vec::new();
+    for &(_, tip) in &tips {
+        let of_tip = path_to(tree, base, tip, diagnostics)?;
+        path.extend(of_tip.into_iter().filter(|joint| !path.contains(joint)).collect::<Vec<_>>());
+    }
+    let tip = tips[0].1;
     let moving: Vec<usize> = path.iter().copied().filter(|&j| tree.joints[j].kind.moves() && locks.of(j).is_none()).collect();
     if let Some(&joint) = moving.get(MAX_JOINTS) {
         let message =
@@ -170,7 +192,7 @@ pub(crate) fn arm(
     let led = BTreeMap::new();
     let mut builder =
         Builder { tree, format, locks, led, values, on_path, locked: Vec::new(), massless: Vec::new(), options, bodies: 0 };
-    let (rows, tool) = builder.rows(&path)?;
+    let (rows, ends, on_base) = builder.rows(base, &path, &tips)?;
     if let (true, Some(&joint)) = (massless_file, moving.first()) {
         let message = "no link of the file has an `inertial`: the description is of kinematics alone";
         let help = "give the moving links masses, centres and inertias where forces matter";
@@ -183,9 +205,8 @@ pub(crate) fn arm(
         return None;
     }
     let gravity = builder.gravity(base);
-    let first = path.iter().position(|joint| moving.first() == Some(joint)).unwrap_or(0);
-    let on_base = path[..first].iter().map(|&j| tree.joints[j].parent).chain(path.get(first).map(|&j| tree.joints[j].parent));
-    let left_out_branches = on_base.flat_map(|link| &tree.links[link].below).filter(|joint| !builder.on_path.contains(joint));
+    let left_out_branches =
+        on_base.iter().flat_map(|&link| &tree.links[link].below).filter(|joint| !builder.on_path.contains(joint));
     let left_out_branches = left_out_branches.filter(|&&joint| tree.links[tree.joints[joint].child].role != Role::Frame).count();
     let mut assumed = format.assumed(&moving);
     if format.has_body(base) {
@@ -198,13 +219,12 @@ pub(crate) fn arm(
         name: robot_name,
         robot: tree.name.clone(),
         base: tree.links[base].name.clone(),
-        tip: tree.links[tip].name.clone(),
+        ends,
         gravity: gravity.texts,
         gravity_rounded: gravity.rounded,
         gravity_size: gravity.size,
         gravity_offset: gravity.offset,
         rows,
-        tool,
         snap,
         locked,
         massless,
@@ -218,6 +238,24 @@ pub(crate) fn arm(
     })
 }
 
+/// The joints from the base to a tip; a fault is reported.
+fn path_to(tree: &Tree, base: usize, tip: usize, diagnostics: &mut Diagnostics) -> Option<Vec<usize>> {
+    let path = tree.path(base, tip);
+    if path.is_none() {
+        let (from, to) = (&tree.links[base].name, &tree.links[tip].name);
+        let message = format!("the link `{}` is not below `{}`", shown(to), shown(from));
+        let way = tips::way_up(tree, tip);
+        let below = format!("a link below `{}` as `--tip`", shown(from));
+        let help = match way {
+            Some(way) => format!("above it are {way}: take one of them as `--base`, or {below}"),
+            None => format!("it hangs on nothing: take {below}"),
+        };
+        let fault = Diagnostic::new(Code::NotBelow, tree.links[tip].span, message, "this is to be the tip", help);
+        diagnostics.push(fault.also(tree.links[base].span, "this is to be the base"));
+    }
+    path
+}
+
 /// The link that an option names, `Some(None)` if the option is not given.
 fn named_link(tree: &Tree, name: Option<&str>, option: &str, diagnostics: &mut Diagnostics) -> Option<Option<usize>> {
     let Some(name) = name else { return Some(None) };
@@ -227,6 +265,15 @@ fn named_link(tree: &Tree, name: Option<&str>, option: &str, diagnostics: &mut D
         diagnostics.push(Diagnostic::new(Code::UnknownLink, beginning(), message, "", tree.meant_link(name)));
     }
     found.map(Some)
+}
+
+/// The name of an end effector, as every language can begin names with it.
+fn beginning_with_a_letter(name: &str) -> String {
+    let plain: String = name.trim_start_matches(|c: char| !c.is_ascii_alphabetic()).chars().take(LONGEST_TIP).collect();
+    if plain.is_empty() {
+        return "tip".into();
+    }
+    plain
 }
 
 /// An identifier that has not been taken yet.
@@ -248,14 +295,16 @@ fn identifier(name: &str, taken: &mut BTreeSet<String>, free: fn(&str) -> bool) 
 }
 
 impl Builder<'_> {
-    /// Rows of the moving joints, and the poses after the last one.
-    fn rows(&mut self, path: &[usize]) -> Option<(Vec<Row>, Vec<Pose>)> {
+    /// Rows of the moving joints, the end effectors behind them, and the links that no joint moves.
+    fn rows(&mut self, base: usize, path: &[usize], tips: &[(Option<&str>, usize)]) -> Option<(Vec<Row>, Vec<End>, Vec<usize>)> {
         let tree = self.tree;
         let mut rows: Vec<Row> = Vec::new();
-        let mut pending: Vec<Pose> = Vec::new();
+        // Of each link the row that moves it, and the poses between that row's link frame and its own.
+        let mut places: BTreeMap<usize, (Option<usize>, Vec<Pose>)> = BTreeMap::from([(base, (None, Vec::new()))]);
         let (mut links, mut names) = (Vec::new(), BTreeSet::new());
         for &index in path {
             let joint = &tree.joints[index];
+            let (mut owner, mut pending) = places[&joint.parent].clone();
             let origin = self.format.origin(index, &mut self.values);
             let moves = joint.kind.moves() && self.locks.of(index).is_none();
             pending.extend(origin);
@@ -265,24 +314,46 @@ impl Builder<'_> {
                 self.refuse_mimic(index);
                 let mut row = self.row(index, std::mem::take(&mut pending));
                 row.name = identifier(&joint.name, &mut names, is_free_name);
+                row.parent = owner;
+                owner = Some(rows.len());
                 rows.push(row);
                 links.push(joint.child);
             } else {
                 pending.extend(self.standing(index, true));
                 pending.retain(|pose| !pose.is_nothing());
             }
-            if let Some(row) = rows.last_mut() {
+            if let Some(owner) = owner {
                 let own = moves.then_some(joint.child);
                 let (body, attached, unreadable) = self.bodies(joint.child, &pending, own)?;
+                let row = &mut rows[owner];
                 row.body = row.body.take().or(body);
                 row.unreadable |= unreadable;
                 row.attached.extend(attached);
             }
+            places.insert(joint.child, (owner, pending));
         }
         for (row, link) in rows.iter_mut().zip(links) {
             self.complete(link, row);
         }
-        Some((rows, pending))
+        let mut names = BTreeSet::new();
+        let mut ends = Vec::new();
+        for &(name, tip) in tips {
+            let (owner, tool) = places.get(&tip).cloned().unwrap_or_default();
+            let link = tree.links[tip].name.clone();
+            let Some(row) = owner else {
+                // Of one end effector the caller says that nothing moves.
+                if name.is_some() && !self.values.diagnostics.has_errors() {
+                    let message = format!("no joint moves the link `{}`", shown(&link));
+                    let help = "choose a `--tip` below a joint that turns or slides";
+                    self.values.report(Code::NoJoints, tree.links[tip].span, message, "", help);
+                }
+                continue;
+            };
+            let name = name.map(|name| identifier(&beginning_with_a_letter(name), &mut names, is_free_name));
+            ends.push(End { name, link, row, tool });
+        }
+        let still = places.into_iter().filter(|(_, (owner, _))| owner.is_none()).map(|(link, _)| link).collect();
+        Some((rows, ends, still))
     }
 
     /// Reports a list of poses that robot.yaml would not take.
@@ -316,6 +387,7 @@ impl Builder<'_> {
             prismatic: joint.kind == Kind::Prismatic,
             origin,
             motion: self.format.motion(index, &mut self.values),
+            parent: None,
             body: None,
             attached: Vec::new(),
             unreadable: false,

@@ -137,7 +137,7 @@ impl<'d> Converter<'d> {
         if let Some(tip) = &description.tip {
             text.push(format!("tip: {}", tip.value));
         }
-        text.extend(poses("tool", &rows.tool));
+        text.extend(poses("tool", &rows.tool).filter(|_| description.tips.is_none()));
         if let Some(payload) = &description.payload {
             text.push("payload:".into());
             self.body(payload, "  ", &mut text);
@@ -145,6 +145,7 @@ impl<'d> Converter<'d> {
                 *text.last_mut()? = "payload: {}".into();
             }
         }
+        self.tips(&rows, &mut text)?;
         self.rest(&mut text);
         let moved = rows.rows.iter().any(|row| row.frame != Placement::identity());
         let named = matches!(description.regressor.as_ref().map(|r| &r.value), Some(RegressorDescription::Names(_)));
@@ -212,7 +213,7 @@ impl<'d> Converter<'d> {
             let twist = self.two(["xyz: [", &self.value(&joint.a), ", 0, 0]"], ["rpy: [", &self.value(&joint.alpha), ", 0, 0]"]);
             let turn = self.two(["xyz: [0, 0, ", &self.value(&joint.d), "]"], ["rpy: [0, 0, ", &self.value(&joint.theta), "]"]);
             let standard = from == Convention::Standard;
-            let mut before = valid.parent.map_or_else(Vec::new, |parent| behind(&rows, parent.0 as usize));
+            let mut before = valid.parent.map_or_else(Vec::new, |parent| behind(&rows, parent.index()));
             before.extend(self.elements(joint.mount.as_ref()));
             before.extend(twist.clone().filter(|_| !standard).into_iter().chain(turn));
             let mut keys: Vec<String> = poses("origin", &before).into_iter().collect();
@@ -221,7 +222,7 @@ impl<'d> Converter<'d> {
             let named = if standard { names::of_values([&joint.a, &joint.alpha]) } else { Vec::new() };
             rows.push(Row { mount: Vec::new(), keys, poses: after, frame: self.nominal(&valid.row.after.frame), named });
         }
-        let mut tool = behind(&rows, self.arm.tip.0 as usize);
+        let mut tool = behind(&rows, self.arm.tip.index());
         tool.extend(self.elements(self.description.tool.as_ref()));
         Rows { base: self.elements(self.description.base.as_ref()), rows, tool }
     }
@@ -236,14 +237,16 @@ impl<'d> Converter<'d> {
     fn normals(&mut self, to: Convention) -> Option<Rows<'d>> {
         let description = self.description;
         self.frozen.extend(description.joints.iter().flat_map(|joints| &joints.value).flat_map(names::of_row));
-        self.frozen.extend([&description.base, &description.tool].into_iter().flat_map(|pose| names::of_pose(pose.as_ref())));
+        let tools = description.tips.iter().flat_map(|tips| &tips.value).map(|tip| &tip.tool);
+        let poses = [&description.base, &description.tool].into_iter().chain(tools);
+        self.frozen.extend(poses.flat_map(|pose| names::of_pose(pose.as_ref())));
         let chains = self.chains();
         let several_on_base = self.arm.parents().filter(Option::is_none).count() > 1;
-        let tip = self.arm.tip.0 as usize;
+        let tip = self.arm.tip.index();
         let mut all = Rows { base: Vec::new(), rows: Vec::new(), tool: Vec::new() };
         let mut rows: Vec<Option<Row<'d>>> = self.arm.joints.iter().map(|_| None).collect();
         for chain in chains {
-            let is_last = chain.last() == Some(&tip);
+            let is_last = self.arm.tips.is_empty() && chain.last() == Some(&tip);
             let end = if is_last { self.nominal(&self.arm.tool.frame) } else { Placement::identity() };
             let Rows { base, rows: of_chain, tool } = self.normals_of(to, &chain, &end)?;
             let first = chain[0];
@@ -253,7 +256,7 @@ impl<'d> Converter<'d> {
             // A chain starts from the old link frame of its parent.
             let mut mount = self.arm.joints[first]
                 .parent
-                .map_or_else(Vec::new, |parent| rows[parent.0 as usize].as_ref().map_or_else(Vec::new, |row| row.poses.clone()));
+                .map_or_else(Vec::new, |parent| rows[parent.index()].as_ref().map_or_else(Vec::new, |row| row.poses.clone()));
             match self.arm.joints[first].parent {
                 None if !several_on_base => all.base = base,
                 _ => {
@@ -521,6 +524,32 @@ impl<'d> Converter<'d> {
         text.push(format!("{indent}inertia: {{{}}}", parts.join(", ")));
     }
 
+    /// The end effectors with names, each in the new frame of its link.
+    fn tips(&mut self, rows: &Rows<'_>, text: &mut Vec<String>) -> Option<()> {
+        let Some(tips) = &self.description.tips else { return Some(()) };
+        text.push("tips:".into());
+        for (tip, valid) in tips.value.iter().zip(&self.arm.tips) {
+            text.push(format!("  - name: {}", valid.name));
+            text.push(format!("    joint: {}", tip.joint.as_ref()?.value));
+            let carried = rows.rows[valid.joint.index()].poses.iter().cloned();
+            let tool: Vec<String> = carried.chain(self.elements(tip.tool.as_ref())).collect();
+            text.extend(poses("tool", &tool).map(|line| format!("    {line}")));
+            if let Some(payload) = &tip.payload {
+                text.push("    payload:".into());
+                self.body(payload, "      ", text);
+                if payload.mass.is_none() && payload.com.is_none() && payload.inertia.is_none() {
+                    *text.last_mut()? = "    payload: {}".into();
+                }
+            }
+            if tip.task.is_some() {
+                let rows: Vec<&str> = valid.task.iter().map(|row| row.name()).collect();
+                text.push(format!("    task: [{}]", rows.join(", ")));
+            }
+            text.extend(self.inverse_kinematics(&tip.inverse_kinematics).map(|line| format!("    {line}")));
+        }
+        Some(())
+    }
+
     /// The parts that do not depend on frames.
     fn rest(&self, text: &mut Vec<String>) {
         // Every key, so that none is left out unseen; the first ones are written before.
@@ -540,6 +569,7 @@ impl<'d> Converter<'d> {
             task,
             regressor,
             inverse_kinematics,
+            tips: _,
             allow,
         } = self.description;
         if let Some(task) = task {

@@ -1,6 +1,7 @@
 //! A description as a URDF.
 //!
-//! Root link `base`; for each joint its link, `JOINT_link`, which turns about or slides along an axis through its origin; last link `tool`.
+//! Root link `base`; for each joint its link, `JOINT_link`, which turns about or slides along an axis through its origin; last link `tool`, or the links of named
+//! end effectors.
 //! A list of poses is a line of fixed joints. Rows of Denavit and Hartenberg become
 //!
 //! ```text
@@ -24,8 +25,8 @@ use armgen_codegen::description::{
 use armgen_codegen::diagnostic::Diagnostics;
 use armgen_codegen::document::Expression;
 use armgen_codegen::exact::{Number, Rational};
-use armgen_codegen::kinds::JointKind;
-use armgen_codegen::source::Source;
+use armgen_codegen::kinds::{JointKind, Target};
+use armgen_codegen::source::{Source, Spanned};
 use armgen_codegen::validate::{self, NominalValues};
 
 use crate::number::{decimal, ending};
@@ -109,8 +110,8 @@ pub fn export(source: &Source) -> (Option<Exported>, Diagnostics) {
         let values = NominalValues::new(&description);
         let writer = Writer { source, values, rounded: 0, names: BTreeSet::new(), parts: Vec::new(), lines: Vec::new() };
         let parents = valid.iter().flat_map(|(arm, _)| arm.parents()).collect::<Vec<_>>();
-        let tip = valid.as_ref().map_or(0, |(arm, _)| arm.tip.0 as usize);
-        writer.write(&description, &parents, tip)
+        let ends: Vec<usize> = valid.iter().flat_map(|(arm, _)| arm.ends().into_iter().map(|(link, _)| link)).collect();
+        writer.write(&description, &parents, &ends)
     });
     (exported, diagnostics)
 }
@@ -127,13 +128,19 @@ struct Writer<'d> {
 }
 
 impl Writer<'_> {
-    /// `parents`: the joint that carries each one; `tip`: the joint whose link carries the end effector.
-    fn write(mut self, description: &RobotDescription, parents: &[Option<usize>], tip: usize) -> Exported {
+    /// `parents`: the joint that carries each one; `ends`: the joints whose links carry end effectors.
+    fn write(mut self, description: &RobotDescription, parents: &[Option<usize>], ends: &[usize]) -> Exported {
         let joints: &[JointDescription] = description.joints.as_ref().map_or(&[], |joints| &joints.value);
         let convention = description.convention.as_ref().map_or(Convention::Urdf, |convention| convention.value);
-        self.names.extend(["base".to_owned(), "tool".to_owned()]);
+        let tips = description.tips.as_ref().map_or(&[][..], |tips| &tips.value);
+        let word = |name: &Option<Spanned<String>>| name.as_ref().map_or_else(String::new, |name| name.value.clone());
+        self.names.insert("base".to_owned());
         let name = |joint: &JointDescription| joint.name.as_ref().map_or_else(String::new, |name| name.value.clone());
         self.names.extend(joints.iter().map(|joint| format!("{}_link", name(joint))));
+        let tools: Vec<(String, Option<&PoseDescription>)> = match tips {
+            [] => vec![(self.free_name("tool"), description.tool.as_ref())],
+            tips => tips.iter().map(|tip| (self.free_name(&word(&tip.name)), tip.tool.as_ref())).collect(),
+        };
         let base = self.poses(description.base.as_ref());
         // The name of each link, and the poses between its origin and the rows on it.
         let mut links: Vec<(String, Vec<Pose>)> = Vec::new();
@@ -167,9 +174,10 @@ impl Writer<'_> {
             }
             links.push((moving, after));
         }
-        if let Some((link, mut before)) = links.get(tip).cloned() {
-            before.extend(self.poses(description.tool.as_ref()));
-            self.fixed("tool", &link, before, None);
+        for ((name, tool), &end) in tools.iter().zip(ends) {
+            let (link, mut before) = links[end].clone();
+            before.extend(self.poses(*tool));
+            self.fixed(name, &link, before, None);
         }
         self.say_what_is_left_out(description, joints);
         let urdf =
@@ -431,18 +439,24 @@ impl Writer<'_> {
             task,
             regressor,
             inverse_kinematics: PosturesDescription { target, given },
+            tips,
             allow,
         } = description;
+        let asked = |target: &Option<Spanned<Target>>, given: &Option<Spanned<String>>| target.is_some() || given.is_some();
+        let tips = || tips.iter().flat_map(|tips| &tips.value);
         let gravity = gravity.as_ref().map(|gravity| gravity.value.each_ref().map(|x| self.value(x)));
         if let Some(gravity) = gravity.filter(|gravity| *gravity != ["0", "0", "-9.81"].map(str::to_owned)) {
             lines.push(format!("a URDF has no gravity; who reads it takes 0 0 -9.81, not {}", gravity.join(" ")));
         }
         for (what, given) in [
-            ("the payload", payload.is_some()),
+            ("the payload", payload.is_some() || tips().any(|tip| tip.payload.is_some())),
             ("gravity as an argument, whose nominal value is taken", *gravity_is_argument),
-            ("`task`", task.is_some()),
+            ("`task`", task.is_some() || tips().any(|tip| tip.task.is_some())),
             ("`regressor`", regressor.as_ref().is_some_and(|r| !matches!(r.value, RegressorDescription::Standard))),
-            ("`inverse_kinematics`", target.is_some() || given.is_some()),
+            (
+                "`inverse_kinematics`",
+                asked(target, given) || tips().any(|tip| asked(&tip.inverse_kinematics.target, &tip.inverse_kinematics.given)),
+            ),
             ("`allow`", !allow.is_empty()),
             ("the names under `parameters`, whose values are written", !parameters.is_empty()),
         ] {

@@ -9,6 +9,11 @@ pub struct Options {
     pub base: Option<String>,
     /// The link whose frame is the end effector's; the only one that it can be if `None`.
     pub tip: Option<String>,
+    /// Links whose frames are those of several end effectors, each with the name of the end effector; the link's if `None`. None for an arm
+    /// with one end effector, that of `tip`.
+    pub tips: Vec<(Option<String>, String)>,
+    /// Whether every joint below the base belongs to the arm, and each link that ends a branch carries an end effector.
+    pub all: bool,
     /// Joints that stand still, each with an expression: `("finger", "0.04")`.
     pub lock: Vec<(String, String)>,
     /// The name of the robot; the file's if `None`.
@@ -35,6 +40,8 @@ impl Default for Options {
         Options {
             base: None,
             tip: None,
+            tips: Vec::new(),
+            all: false,
             lock: Vec::new(),
             name: None,
             snap: Options::SNAP,

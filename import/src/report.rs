@@ -6,7 +6,7 @@ use armgen_codegen::source::{Source, Span};
 use serde_json::{json, Map, Value};
 
 use crate::bound::Bound;
-use crate::chain::{Arm, Attached, Row};
+use crate::chain::{Arm, Attached, End, Row};
 use crate::format::Format;
 use crate::snap::Snapped;
 
@@ -98,11 +98,11 @@ pub(crate) fn of(source: &Source, format: &dyn Format, arm: &Arm, bound: Bound) 
             left_out.insert(what.to_owned(), count);
         }
     }
-    let json = json!({
+    let mut json = json!({
         "robot": arm.name,
         "format": format.name(),
         "base": arm.base,
-        "tip": arm.tip,
+        "tip": arm.ends.first().map(|end| end.link.as_str()),
         "joints": joints,
         "snapped": arm.snap.snapped.iter().map(snapped).collect::<Vec<_>>(),
         "rounded": rounded,
@@ -116,6 +116,10 @@ pub(crate) fn of(source: &Source, format: &dyn Format, arm: &Arm, bound: Bound) 
             "joint": arm.rows.get(bound.joint).map(|row| row.name.as_str()),
         },
     });
+    if arm.ends.iter().any(|end| end.name.is_some()) {
+        let end = |end: &End| json!({ "name": end.name, "link": end.link, "joint": arm.rows[end.row].name });
+        json["tips"] = arm.ends.iter().map(end).collect();
+    }
     let words = |most| words(source, arm, bound, &left_out, most);
     let attached = arm.rows.iter().map(|row| row.attached.len()).sum();
     Report { lines: words(usize::MAX), short: words(NAMED), json, attached, near: arm.snap.near.len(), moved: bound.flange }
@@ -128,7 +132,8 @@ fn words(source: &Source, arm: &Arm, bound: Bound, left_out: &BTreeMap<String, u
         more => format!("{} and {more} more", all[..most].join(", ")),
     };
     let names = |names: Vec<&str>| list(names.iter().map(|name| format!("`{name}`")).collect());
-    lines.push(format!("`{}` to `{}`: {}", arm.base, arm.tip, counted(arm.rows.len(), "moving joint")));
+    let ends: Vec<String> = arm.ends.iter().map(|end| format!("`{}`", end.link)).collect();
+    lines.push(format!("`{}` to {}: {}", arm.base, ends.join(", "), counted(arm.rows.len(), "moving joint")));
     let renamed: Vec<String> =
         arm.rows.iter().filter(|row| row.name != row.joint).map(|row| format!("`{}` is `{}`", row.joint, row.name)).collect();
     if !renamed.is_empty() {

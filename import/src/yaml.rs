@@ -5,7 +5,7 @@ use std::fmt::Write;
 use armgen_codegen::source::{Source, Span};
 
 use crate::body::{Body, ELEMENTS};
-use crate::chain::{Arm, Row};
+use crate::chain::{Arm, End, Row};
 use crate::pose::{Pose, Turn};
 use crate::report::Report;
 use crate::written::Written;
@@ -34,11 +34,22 @@ pub(crate) fn text(source: &Source, arm: &Arm, report: &Report) -> String {
         (false, true) => line(&format!("allow: [impossible-inertia, rounded-angle]  # {IMPOSSIBLE}; every digit is meant")),
     }
     line("joints:");
-    for row in &arm.rows {
-        joint(&mut line, source, arm, row);
+    for (k, row) in arm.rows.iter().enumerate() {
+        joint(&mut line, source, arm, k, row);
     }
-    if !is_identity(&arm.tool) {
-        line(&format!("tool: {}{}", poses(&arm.tool), snapped(source, arm, &spans_of(&arm.tool))));
+    for End { tool, .. } in arm.ends.iter().filter(|end| end.name.is_none() && !is_identity(&end.tool)) {
+        line(&format!("tool: {}{}", poses(tool), snapped(source, arm, &spans_of(tool))));
+    }
+    if arm.ends.iter().any(|end| end.name.is_some()) {
+        line("tips:");
+    }
+    for End { name, link, row, tool } in &arm.ends {
+        let Some(name) = name else { continue };
+        line(&format!("  - name: {name}  # link {}", plain(link)));
+        line(&format!("    joint: {}", arm.rows[*row].name));
+        if !is_identity(tool) {
+            line(&format!("    tool: {}{}", poses(tool), snapped(source, arm, &spans_of(tool))));
+        }
     }
     text
 }
@@ -56,10 +67,13 @@ fn capital(words: &str) -> String {
     format!("{first}{}.", chars.as_str())
 }
 
-fn joint(line: &mut impl FnMut(&str), source: &Source, arm: &Arm, row: &Row) {
+fn joint(line: &mut impl FnMut(&str), source: &Source, arm: &Arm, k: usize, row: &Row) {
     let at = source.place(row.span.start).line;
     line(&format!("  - name: {}  # joint {}, link {}, line {at}", row.name, plain(&row.joint), plain(&row.link)));
     line(&format!("    type: {}", if row.prismatic { "prismatic" } else { "revolute" }));
+    if row.parent != k.checked_sub(1) {
+        line(&format!("    parent: {}", row.parent.map_or("base", |parent| arm.rows[parent].name.as_str())));
+    }
     if !is_identity(&row.origin) {
         line(&format!("    origin: {}{}", poses(&row.origin), snapped(source, arm, &spans_of(&row.origin))));
     }

@@ -46,7 +46,8 @@ pub(crate) fn bodies(manipulator: &Manipulator, description: &RobotDescription, 
         }
     }
     if let Some(payload) = &manipulator.payload {
-        all.push(of("payload".into(), json!("e"), payload, description.payload.as_ref()));
+        let of_tip = description.tips.iter().flat_map(|tips| &tips.value).next().and_then(|tip| tip.payload.as_ref());
+        all.push(of("payload".into(), json!("e"), payload, description.payload.as_ref().or(of_tip)));
     }
     Value::Array(all)
 }

@@ -69,7 +69,7 @@ struct Quantity {
 
 impl Equations {
     pub(crate) fn new(model: &Model) -> Equations {
-        let [nominal, symbolic] = Sheet::in_both_readings(model, &Item::all(), CLOSED);
+        let [nominal, symbolic] = Sheet::in_both_readings(model, &Item::all(&model.manipulator.tips), CLOSED);
         let mut quantities = parallel_map(&nominal.quantities, |shown| {
             let other = symbolic.quantities.iter().find(|other| other.name == shown.name);
             quantity(&nominal.robot, shown, other)

@@ -81,7 +81,7 @@ pub fn page(source: &Source, runs: &[Run]) -> Result<(Option<String>, Diagnostic
         let fits = run.log.as_ref().map_or(Ok(()), |log| log.fits(&joints));
         fits.map_err(|reason| Misfit { run: run.name.clone(), reason })?;
     }
-    let model = Model::new(manipulator);
+    let model = Model::new(manipulator.with_one_end_effector());
     let module = match derived(&model, &places, Selection::ALL, &mut diagnostics) {
         Some(module) => module,
         None => return Ok((None, diagnostics)),
@@ -99,7 +99,7 @@ pub fn page(source: &Source, runs: &[Run]) -> Result<(Option<String>, Diagnostic
 pub fn picture(source: &Source, nonce: &str) -> (Option<String>, Diagnostics) {
     let (valid, mut diagnostics) = validate::read_for(source, Scalar::F64);
     let Some((manipulator, places)) = valid else { return (None, diagnostics) };
-    let model = Model::new(manipulator);
+    let model = Model::new(manipulator.with_one_end_effector());
     let functions = Selection::named(FUNCTIONS).expect("names of the catalogue");
     let Some(module) = derived(&model, &places, functions, &mut diagnostics) else { return (None, diagnostics) };
     let whole = Whole { cost: document::LATER, equations: document::LATER, data: None, nonce: Some(nonce) };

@@ -50,8 +50,8 @@ impl Robot {
     fn new(source: Source, manipulator: Manipulator, places: Places) -> Robot {
         let model = Model::new(manipulator);
         let (mut functions, mut absent) = (Vec::new(), Vec::new());
-        for (quantity, with) in catalogue::functions() {
-            match (quantity.missing)(&model, with) {
+        for (quantity, with) in catalogue::functions_of(&model.manipulator.tips) {
+            match quantity.absence(&model, with) {
                 Some(reason) => absent.push((quantity.function_name(with), reason)),
                 None => functions.push(Slot { quantity, with, derived: OnceLock::new() }),
             }
@@ -256,10 +256,10 @@ impl Arm {
     /// Derives functions at the same time; all that the arm has if none is named.
     fn prepare(&self, py: Python<'_>, names: Vec<String>) -> PyResult<()> {
         let robot = &*self.robot;
-        if let Err(unknown) = Selection::named(&names) {
-            return Err(PyValueError::new_err(unknown.to_string()));
-        }
-        if let Some((name, reason)) = robot.absent.iter().find(|(name, _)| names.contains(name)) {
+        let chosen = Selection::named(&names).map_err(|unknown| PyValueError::new_err(unknown.to_string()))?;
+        let unknown = chosen.unknown_to(&robot.model.manipulator.tips).into_iter().map(|absent| (absent.function, absent.reason));
+        let absent = robot.absent.iter().filter(|(name, _)| names.contains(name)).cloned();
+        if let Some((name, reason)) = unknown.chain(absent).next() {
             return Err(PyValueError::new_err(format!("there is no `{name}` of this arm: {reason}")));
         }
         let is_wanted = |slot: &&Slot| {

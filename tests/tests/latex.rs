@@ -47,7 +47,7 @@ fn sheet(path: &str, reading: Reading) -> String {
     let text = std::fs::read_to_string(&file).unwrap_or_else(|error| panic!("{}: {error}", file.display()));
     let (valid, _) = validate::read(&Source::new(path, text));
     let (manipulator, _) = valid.expect("a valid description");
-    Sheet::new(&Model::new(manipulator), &Item::all(), reading).latex()
+    Sheet::new(&Model::new(manipulator), &Item::all(&[]), reading).latex()
 }
 
 #[test]

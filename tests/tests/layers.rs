@@ -53,11 +53,11 @@ const CODEGEN: Layers = &[
     ("derive", &["kinds", "manipulator", "pass"]),
     ("equations", &["derive", "diagnostic", "kinds", "manipulator", "source"]),
     ("inverse_kinematics", &["derive", "kinds", "manipulator"]),
-    ("catalogue", &["derive"]),
+    ("catalogue", &["derive", "manipulator"]),
     ("program", &["catalogue", "kinds", "parallel"]),
     ("schedule", &["catalogue", "derive", "kinds", "manipulator", "parallel", "pass", "program", "suggest"]),
     ("emit", &["catalogue", "inverse_kinematics", "kinds", "manipulator", "parallel", "program"]),
-    ("show", &["catalogue", "derive", "parallel"]),
+    ("show", &["catalogue", "derive", "manipulator", "parallel"]),
     ("build_script", &["catalogue", "diagnostic", "kinds", "pass", "program", "schedule", "source"]),
 ];
 

@@ -28,4 +28,5 @@ mod robot_yaml_page;
 mod shown;
 mod snapshots;
 mod technical_project;
+mod tips;
 mod trees;

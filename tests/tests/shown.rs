@@ -105,7 +105,7 @@ fn check(what: &str, text: &str) {
     let vectors: [(&str, &[f64]); 7] =
         [("q", &a.q), ("dq", &a.dq), ("ddq", &a.ddq), ("dqr", &a.dqr), ("ddqr", &a.ddqr), ("tau", &tau), ("g", &g)];
     let variables = state_names(&vectors);
-    let items: Vec<Item> = Item::names().iter().flat_map(|name| Item::named(name, dof)).collect();
+    let items: Vec<Item> = Item::names(&[]).iter().flat_map(|name| Item::named(name, dof, &[])).collect();
     let forms = [Form::Shortest, Form::Closed, Form::Steps];
     for (reading, form) in [Reading::Nominal, Reading::Symbolic].into_iter().flat_map(|reading| forms.map(|form| (reading, form)))
     {

@@ -72,7 +72,7 @@ fn meanings() {
             value => format!("{:08x}", (value >> 32) ^ (value & 0xffff_ffff)),
         };
         let sizes = model.sizes();
-        for (quantity, with) in catalogue::functions().filter(|(quantity, with)| (quantity.missing)(&model, *with).is_none()) {
+        for (quantity, with) in catalogue::functions().filter(|(quantity, with)| quantity.absence(&model, *with).is_none()) {
             let view = if with { View::Vector(&model.parameters) } else { View::Nominal };
             let derivation = quantity.by_recursion(&model, view);
             writeln!(text, "\n{}", quantity.function_name(with)).expect("text");
@@ -99,7 +99,7 @@ fn closed_forms() {
     let mut text = String::new();
     for reading in [Reading::Nominal, Reading::Symbolic] {
         writeln!(text, "---- {reading:?} ----\n").expect("text");
-        let mut sheet = Sheet::in_style(&model, &Item::all(), reading, Style { form: Form::Closed, digits: None });
+        let mut sheet = Sheet::in_style(&model, &Item::all(&[]), reading, Style { form: Form::Closed, digits: None });
         let (closed, programs) = std::mem::take(&mut sheet.quantities).into_iter().partition(|shown| shown.is_closed());
         sheet.quantities = closed;
         text += &sheet.text();

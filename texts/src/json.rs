@@ -47,14 +47,23 @@ fn of_arm(arm: &Manipulator) -> Value {
             })
         })
         .collect();
-    json!({
+    let loads = arm.loads();
+    let mut object = json!({
         "robot": arm.name,
         "gravity": arm.gravity.each_ref().map(number),
         "gravity_is_argument": arm.gravity_is_argument,
         "joints": joints,
-        "payload": arm.payload.as_ref().map(|load| number(&load.body.mass)),
+        "payload": (!loads.is_empty()).then(|| loads.iter().map(|load| number(&load.body.body.mass)).sum::<f64>()),
         "task": arm.task.iter().map(|row| row.name()).collect::<Vec<_>>(),
-    })
+    });
+    if !arm.tips.is_empty() {
+        let tips = arm.tips.iter().map(|tip| {
+            let task: Vec<&str> = tip.task.iter().map(|row| row.name()).collect();
+            json!({ "name": tip.name, "joint": arm.joints[tip.joint.index()].name, "task": task })
+        });
+        object["tips"] = tips.collect();
+    }
+    object
 }
 
 fn of_diagnostic(diagnostic: &Diagnostic, source: &Source) -> Value {

@@ -32,15 +32,16 @@ pub fn steps_of_inverse_kinematics(model: &Model) -> String {
 /// # Errors
 /// A name that no quantity has, with the nearest.
 pub fn items(model: &Model, quantities: &[String]) -> Result<Vec<Item>, String> {
+    let tips = &model.manipulator.tips;
     if quantities.is_empty() {
-        return Ok(Item::all());
+        return Ok(Item::all(tips));
     }
     let dof = model.manipulator.dof();
     let mut items = Vec::new();
     for name in quantities {
-        let named = Item::named(name, dof);
+        let named = Item::named(name, dof, tips);
         if named.is_empty() {
-            let names: Vec<String> = Item::names().into_iter().chain([INVERSE_KINEMATICS.to_owned()]).collect();
+            let names: Vec<String> = Item::names(tips).into_iter().chain([INVERSE_KINEMATICS.to_owned()]).collect();
             let meant = function_meant(&name.replace('-', "_"), &names.iter().map(String::as_str).collect::<Vec<_>>())
                 .map_or_else(String::new, |meant| format!("did you mean `{meant}`? "));
             let known: Vec<String> = names.chunks(4).map(|names| names.join(", ")).collect();

@@ -107,15 +107,23 @@ fn arm(source: &Source, description: &RobotDescription, manipulator: &Manipulato
     let rotors = manipulator.joints.iter().filter_map(|j| j.motor.as_ref()).map(|m| &m.mass);
     let links = manipulator.joints.iter().flat_map(|j| &j.link).map(|part| &part.body.mass);
     let total = links.chain(rotors).fold(Number::zero(), |sum, mass| &sum + &at_nominal(mass));
-    let without = if manipulator.payload.is_some() { ", the payload not counted" } else { "" };
+    let loads = manipulator.loads();
+    let without = if !loads.is_empty() { ", the payload not counted" } else { "" };
     row("mass of links and rotors", format!("{} kg{without}", decimal(&total)));
-    if let Some(payload) = &manipulator.payload {
-        row("payload", format!("{} kg", decimal(&at_nominal(&payload.body.mass))));
+    for load in &loads {
+        let of = load.of.map_or(String::new(), |tip| format!(" on {tip}"));
+        row("payload", format!("{} kg{of}", decimal(&at_nominal(&load.body.body.mass))));
     }
     row("reach", reach::in_words(manipulator));
+    for tip in &manipulator.tips {
+        let joint = &manipulator.joints[tip.joint.index()].name;
+        let (moved, rows) = (manipulator.path_to(tip.joint.index()).len(), tip.task.iter().map(|row| row.name()));
+        let rows = rows.collect::<Vec<_>>().join(", ");
+        row("end effector", format!("{} on {joint}, moved by {}; task {rows}", tip.name, counted(moved, "joint")));
+    }
     let rows: Vec<&str> = manipulator.task.iter().map(|row| row.name()).collect();
     let parents: Vec<Option<usize>> = manipulator.parents().collect();
-    let of_end_effector = std::iter::successors(Some(manipulator.tip.0 as usize), |&joint| parents[joint]).count();
+    let of_end_effector = std::iter::successors(Some(manipulator.tip.index()), |&joint| parents[joint]).count();
     let (m, n) = (rows.len(), of_end_effector);
     let against = match m.cmp(&n) {
         std::cmp::Ordering::Equal => "as many rows as joints".to_string(),
@@ -123,7 +131,9 @@ fn arm(source: &Source, description: &RobotDescription, manipulator: &Manipulato
         std::cmp::Ordering::Greater => format!("{m} rows for {}: not all can be followed", counted(n, "joint")),
     };
     let of = if n < manipulator.dof() { format!("; {} move the end effector", counted(n, "joint")) } else { String::new() };
-    row("task", format!("{} ({against}{of})", rows.join(", ")));
+    if manipulator.tips.is_empty() {
+        row("task", format!("{} ({against}{of})", rows.join(", ")));
+    }
     row(
         "inverse kinematics",
         match inverse_kinematics::of(manipulator) {

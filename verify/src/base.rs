@@ -100,7 +100,7 @@ fn sample<E: Element>(arm: &Arm<E>, state: State<E>, named: &[(Standard, bool)])
         let mut column = nothing();
         match parameter {
             Standard::Link(i, k) => links.add_body(Carrier::Link(i), &unit(k), &mut column),
-            Standard::Payload(k) => whole.add_body(Carrier::Tool, &unit(k), &mut column),
+            Standard::Payload(tip, k) => whole.add_body(Carrier::Tool(tip), &unit(k), &mut column),
             Standard::RotorInertia(i) => whole.add_rotor_inertia(i, &arm.one, &mut column),
             Standard::Armature(i) => whole.add_armature(i, &arm.one, &mut column),
             Standard::RotorViscous(i) => {

@@ -4,7 +4,7 @@ use std::cell::RefCell;
 use std::collections::BTreeMap;
 use std::sync::{Mutex, PoisonError};
 
-use armgen_description::manipulator::Manipulator;
+use armgen_description::manipulator::{Manipulator, Tip};
 
 use crate::arithmetic::degree::{log2_odds, Degree, Degrees};
 use crate::arithmetic::prime::Prime;
@@ -176,7 +176,8 @@ fn sizes(manipulator: &Manipulator, vector: &Vector, base: Option<&OwnParameters
     };
     let base = base.map_or(0, |base| base.named.len());
     let gravity = manipulator.gravity_is_argument;
-    Sizes { n: manipulator.joints.len(), p: parameters, b: base, m: manipulator.task.len(), gravity }
+    let tips = manipulator.tips.iter().map(|tip| (tip.name.clone(), tip.task.len())).collect();
+    Sizes { n: manipulator.joints.len(), p: parameters, b: base, m: manipulator.task.len(), gravity, tips }
 }
 
 /// The program of a function that takes and gives what its name promises; else what is wrong.
@@ -188,7 +189,7 @@ fn fitting<'a>(
 ) -> Result<&'a Program, String> {
     let (promise, _) = Promise::of(name).ok_or("not a function that the checker knows the equations of")?;
     let program = &function.program;
-    let places = promise.returned.places(sizes);
+    let places = promise.returned.places(&sizes.of_function(name));
     if program.outputs.iter().map(|o| &o.place).ne(&places) && Check::Places.is_made() {
         return Err(format!("its result does not have the {} entries that it should", places.len()));
     }
@@ -387,7 +388,7 @@ impl Checker {
 
     /// Numbers of joints, parameters, base parameters and rows of the task.
     pub fn sizes(&self) -> Sizes {
-        self.sizes
+        self.sizes.clone()
     }
 
     fn is_base(&self) -> bool {
@@ -416,8 +417,12 @@ impl Checker {
         // An optional one is missing where the arm has it.
         let of_arm = |name: &str| !self.points.is_empty() && self.points.iter().all(|point| point.knows(name));
         let needed = |name: &String| !self.manipulator.is_massless() || of_arm(name);
-        let required = Promise::required().into_iter().filter(|name| needed(name) && Check::Required.is_made());
-        let optional = Promise::optional().filter(|name| of_arm(name) && Check::Optional.is_made());
+        let tips: Vec<String> = match self.manipulator.tips.as_slice() {
+            [] => vec![String::new()],
+            tips => tips.iter().map(Tip::prefix).collect(),
+        };
+        let required = Promise::required(&tips).into_iter().filter(|name| needed(name) && Check::Required.is_made());
+        let optional = Promise::optional(&tips).filter(|name| of_arm(name) && Check::Optional.is_made());
         required.chain(optional).filter(|name| !module.functions.iter().any(|(other, _)| other == name)).collect()
     }
 

@@ -21,7 +21,7 @@
 use std::fmt::Write;
 
 use crate::claims::Claims;
-use crate::contract::Promise;
+use crate::contract::{of_tip, Promise};
 use crate::enclosure::Float;
 use crate::float::{Arguments, LANES};
 use crate::marked::{marked, FUSED, GRAVITY, LOAD, STRIBECK};
@@ -343,7 +343,7 @@ pub fn companion(module: &Module, claims: &Claims, import: &str) -> Result<Strin
 /// variables. A comment for an arm whose task has not as many rows as it has joints: nothing can be inverted there.
 pub fn of_inverse_kinematics(module: &Module) -> String {
     let sizes = module.sizes();
-    if sizes.m != sizes.n {
+    if sizes.tips.is_empty() && sizes.m != sizes.n {
         return "\n// There is no `inverse_kinematics_error_bound`: the task has not as many rows as the arm has joints.\n"
             .into();
     }
@@ -380,7 +380,7 @@ fn write_function(text: &mut String, program: &Program, table: &Table, promise: 
     let typed = |a: &Argument| format!("{}: &[Real; {}]", a.name(), a.length().rust());
     let arguments: Vec<String> = program.arguments.iter().map(typed).collect();
     let given: Vec<&str> = program.arguments.iter().map(|a| a.name()).collect();
-    let sizes = module.sizes();
+    let sizes = module.sizes().of_function(&program.name);
     let angle = |sum: &Sum| {
         let terms: Vec<String> = sum.terms.iter().map(|(joint, factor)| format!("({joint}, {factor}.0)")).collect();
         let [turn, off] = [sum.turn, sum.off].map(|value| number(value, module.real));
@@ -398,7 +398,7 @@ fn write_function(text: &mut String, program: &Program, table: &Table, promise: 
         "/// Running error bound of `{name}`, entry by entry.\n#[allow(clippy::all, dead_code)]\n#[rustfmt::skip]\npub fn {name}_error_bound({}) -> {} {{\n    static \
          STEPS: [Step; {}] = [{}];\n    static ANGLES: [Angle<'static>; {}] = [{}];\n    static ENTRIES: [u32; {}] = [{}];\n    let e = bounds::<_, _, {}>(&STEPS, &ANGLES, &ENTRIES, &Given {{ {}, ..NONE }});\n    {}\n}}\n\n",
         arguments.join(", "),
-        promise.returned.rust().replace(';', "; ").replace(',', ", "),
+        of_tip(&program.name, &promise.returned.rust()).replace(';', "; ").replace(',', ", "),
         rows.len(),
         rows.join(", "),
         angles.len(),

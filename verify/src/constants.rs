@@ -14,7 +14,7 @@ use crate::enclosure::Float;
 use crate::equations::arm::{formula, Arm};
 use crate::equations::parameters::{self, Standard, Vector};
 use crate::formula::Formula;
-use crate::program::{Literal, NOMINAL_GRAVITY};
+use crate::program::{Literal, NOMINAL_GRAVITY, TIPS};
 use crate::reader::{Constant, Module};
 use crate::report::{ConstantReport, Exact, Verdict};
 
@@ -164,7 +164,7 @@ pub fn nominal_parameters(manipulator: &Manipulator, vector: &Vector, claims: &C
     }
 }
 
-fn expected(checker: &Checker, module: &Module, nominal: &[Formula], names: &[String]) -> Vec<(&'static str, Expected)> {
+fn expected(checker: &Checker, module: &Module, nominal: &[Formula], names: &[String]) -> Vec<(String, Expected)> {
     let manipulator = checker.manipulator();
     let joints = &manipulator.joints;
     let array = |entries: Vec<Expected>| Expected::Array(entries);
@@ -189,12 +189,27 @@ fn expected(checker: &Checker, module: &Module, nominal: &[Formula], names: &[St
         ("EFFORT_LIMITS", sizes(|limits| &limits.effort)),
         ("ACCELERATION_LIMITS", sizes(|limits| &limits.acceleration)),
         ("JERK_LIMITS", sizes(|limits| &limits.jerk)),
-        ("TASK_ROWS", Expected::Integer(manipulator.task.len() as u64)),
-        ("TASK", array(manipulator.task.iter().map(|row| Expected::Integer(row.index() as u64)).collect())),
         ("PARAMETERS", Expected::Integer(parameter_names.len() as u64)),
         ("PARAMETER_NAMES", texts(parameter_names)),
         ("NOMINAL_PARAMETERS", array(nominal.iter().cloned().map(Expected::Number).collect())),
     ];
+    let integers = |all: &[usize]| array(all.iter().map(|&one| Expected::Integer(one as u64)).collect());
+    let mut of_tips = Vec::new();
+    if manipulator.tips.is_empty() {
+        all.push(("TASK_ROWS", Expected::Integer(manipulator.task.len() as u64)));
+        all.push(("TASK", integers(&manipulator.task_rows())));
+    } else {
+        all.push((TIPS, texts(manipulator.tips.iter().map(|tip| tip.name.clone()).collect())));
+    }
+    for tip in &manipulator.tips {
+        let rows: Vec<usize> = tip.task.iter().map(|row| row.index()).collect();
+        let joints: Vec<usize> =
+            std::iter::successors(Some(tip.joint.index()), |&joint| Some(joints[joint].parent?.index())).collect();
+        let joints: Vec<usize> = joints.into_iter().rev().collect();
+        of_tips.push((tip.constant("TASK_ROWS"), Expected::Integer(rows.len() as u64)));
+        of_tips.push((tip.constant("TASK"), integers(&rows)));
+        of_tips.push((tip.constant("COORDINATES"), integers(&joints)));
+    }
     if manipulator.gravity_is_argument {
         let nominal = |id: ParameterId| manipulator.parameters[id.0 as usize].nominal.clone();
         let gravity = manipulator.gravity.iter().map(|g| Expected::Number(formula(&g.evaluate(&nominal))));
@@ -207,7 +222,7 @@ fn expected(checker: &Checker, module: &Module, nominal: &[Formula], names: &[St
         all.push(("BASE_PARAMETER_NAMES", texts(names)));
         all.push(("NOMINAL_BASE_PARAMETERS", array(nominal)));
     }
-    all
+    all.into_iter().map(|(name, expected)| (name.to_owned(), expected)).chain(of_tips).collect()
 }
 
 /// Checks all constants of a module.
@@ -217,7 +232,7 @@ pub fn check(checker: &Checker, module: &Module, nominal: &[Formula]) -> Vec<Con
     let mut reports = Vec::new();
     for (name, expected) in &expected {
         let mut literals = Vec::new();
-        let verdict = match module.constants.get(*name) {
+        let verdict = match module.constants.get(name) {
             None if !Check::ConstantsThere.is_made() => Verdict::Equal,
             None => Verdict::Refused("the module does not have it".into()),
             Some(value) => {
@@ -228,7 +243,7 @@ pub fn check(checker: &Checker, module: &Module, nominal: &[Formula]) -> Vec<Con
                 }
             }
         };
-        reports.push(ConstantReport { name: (*name).into(), verdict, literals });
+        reports.push(ConstantReport { name: name.clone(), verdict, literals });
     }
     let mut differs = |name: &str, check: Check, wrong: &dyn Fn() -> Option<(usize, String)>| {
         let Some(report) = reports.iter_mut().find(|r| r.name == name && r.verdict == Verdict::Equal) else { return };

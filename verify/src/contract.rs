@@ -29,7 +29,7 @@ impl Argument {
 }
 
 /// The sizes of an arm.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Sizes {
     /// Joints.
     pub n: usize,
@@ -37,10 +37,36 @@ pub struct Sizes {
     pub p: usize,
     /// Base parameters.
     pub b: usize,
-    /// Rows of the task.
+    /// Rows of the task; of a module with named end effectors, of the one that is [chosen](Sizes::of_function).
     pub m: usize,
     /// Whether the acceleration of free fall is an argument.
     pub gravity: bool,
+    /// Names of the end effectors and the rows of their tasks; empty if the end effector has no name.
+    pub tips: Vec<(String, usize)>,
+}
+
+impl Sizes {
+    /// The sizes for a function: `m` is of its end effector.
+    #[must_use]
+    pub fn of_function(&self, function: &str) -> Sizes {
+        let tip = tip_of(function).and_then(|tip| self.tips.iter().find(|(name, _)| name.eq_ignore_ascii_case(tip)));
+        Sizes { m: tip.map_or(self.m, |(_, rows)| *rows), ..self.clone() }
+    }
+}
+
+/// The name of the end effector before a function's own name.
+pub fn tip_of(function: &str) -> Option<&str> {
+    let (promise, with) = Promise::of(function)?;
+    let own = if with { format!("{}_with", promise.name) } else { promise.name.to_owned() };
+    function.strip_suffix(own.as_str())?.strip_suffix('_')
+}
+
+/// A text with the constant of the rows of the task, with that of the end effector of a function.
+pub(crate) fn of_tip(function: &str, text: &str) -> String {
+    match tip_of(function) {
+        Some(tip) => text.replace("TASK_ROWS", &format!("{}_TASK_ROWS", tip.to_ascii_uppercase())),
+        None => text.to_owned(),
+    }
 }
 
 impl Length {
@@ -92,6 +118,8 @@ pub struct Promise {
     pub required: bool,
     /// Whether a form `_with` run-time parameters exists.
     pub parameters: bool,
+    /// Whether it is of an end effector: where these have names, each has it, with its name before this.
+    pub of_tip: bool,
 }
 
 /// The Rust array with these entries, or its type.

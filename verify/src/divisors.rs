@@ -16,6 +16,7 @@
 
 use std::collections::BTreeSet;
 
+use crate::contract::{tip_of, Promise};
 use crate::element::Element;
 use crate::program::{Program, Step};
 
@@ -26,20 +27,20 @@ pub enum Matrix {
     Inertia,
     /// B(q) with run-time parameters.
     InertiaWith,
-    /// J B^-1 J' for the rows of the task.
-    Mobility,
+    /// J B^-1 J' for the rows of the task of the end effector of this number.
+    Mobility(usize),
     /// The mass of the arm, a 1×1 matrix.
     Mass,
     /// The mass with run-time parameters.
     MassWith,
 }
 
-/// The matrices whose pivots a function may divide by.
+/// The matrices whose pivots a function may divide by; the number of its end effector is left open.
 pub fn needed(function: &str) -> &'static [Matrix] {
-    match function {
+    match Promise::of(function).filter(|(promise, _)| promise.of_tip).map_or(function, |(promise, _)| promise.name) {
         "forward_dynamics" | "forward_dynamics_derivatives" => &[Matrix::Inertia],
         "forward_dynamics_with" => &[Matrix::InertiaWith],
-        "operational_inertia" => &[Matrix::Inertia, Matrix::Mobility],
+        "operational_inertia" => &[Matrix::Inertia, Matrix::Mobility(0)],
         "center_of_mass" => &[Matrix::Mass],
         "center_of_mass_with" => &[Matrix::MassWith],
         _ => &[],
@@ -48,22 +49,35 @@ pub fn needed(function: &str) -> &'static [Matrix] {
 
 /// Pivots of matrices at a state.
 #[derive(Clone, Debug)]
-pub struct Pivots<E>(Vec<(Matrix, Vec<E>)>);
+pub struct Pivots<E> {
+    all: Vec<(Matrix, Vec<E>)>,
+    /// What names of functions of each end effector begin with.
+    tips: Vec<String>,
+}
 
 impl<E: Element> Pivots<E> {
     /// The pivots of matrices, given row by row.
-    pub fn of(matrices: Vec<(Matrix, Vec<Vec<E>>)>) -> Pivots<E> {
+    pub fn of(matrices: Vec<(Matrix, Vec<Vec<E>>)>, tips: Vec<String>) -> Pivots<E> {
         let both = |rows: &[Vec<E>]| {
             let turned: Vec<Vec<E>> = rows.iter().rev().map(|row| row.iter().rev().cloned().collect()).collect();
             [eliminated(rows), eliminated(&turned)].concat()
         };
-        Pivots(matrices.into_iter().map(|(matrix, rows)| (matrix, both(&rows))).collect())
+        Pivots { all: matrices.into_iter().map(|(matrix, rows)| (matrix, both(&rows))).collect(), tips }
     }
 
-    fn of_function(&self, function: &str) -> impl Iterator<Item = &E> {
+    fn of_function<'a>(&'a self, function: &'a str) -> impl Iterator<Item = &'a E> {
         let needed = needed(function);
-        self.0.iter().filter(|(matrix, _)| needed.contains(matrix)).flat_map(|(_, pivots)| pivots)
+        let is_needed = move |matrix: Matrix| match matrix {
+            Matrix::Mobility(tip) => needed.contains(&Matrix::Mobility(0)) && is_of(function, &self.tips[tip]),
+            other => needed.contains(&other),
+        };
+        self.all.iter().filter(move |(matrix, _)| is_needed(*matrix)).flat_map(|(_, pivots)| pivots)
     }
+}
+
+/// Whether a function is of the end effector that names begin with this for.
+fn is_of(function: &str, prefix: &str) -> bool {
+    tip_of(function).map_or(String::new(), |tip| format!("{tip}_")) == prefix
 }
 
 /// The pivots of a matrix, up to the first 0.

@@ -159,7 +159,14 @@ const IDENTITIES: [Identity; 10] = [
     ("dJ/dt is the rate of J along dq", |run| {
         let state = run.state();
         let moving = state.moving(&state.dq, &state.ddq);
-        Ok(run.rates("geometric_jacobian", &moving)? == run.run("geometric_jacobian_dot", state)?)
+        let names = run.point.reference.values.keys().filter_map(|name| name.strip_suffix("geometric_jacobian_dot"));
+        let there: Vec<&str> = names.filter(|tip| run.has(&format!("{tip}geometric_jacobian_dot"))).collect();
+        let mut holds = if there.is_empty() { Err(ABSENT.into()) } else { Ok(true) };
+        for tip in there {
+            let [jacobian, rate] = ["", "_dot"].map(|end| format!("{tip}geometric_jacobian{end}"));
+            holds = Ok(holds? && run.rates(&jacobian, &moving)? == run.run(&rate, state)?);
+        }
+        holds
     }),
     ("equations_of_motion = (B, C, g)", |run| {
         let state = run.state();

@@ -573,7 +573,7 @@ fn misses(arm: &Arm<f64>, outcome: &run::Outcome, pose: &[[f64; 4]; 3], first: u
             g0: Vec::new(),
         };
         let angles = joints.iter().map(|[c, s]| (*s, *c)).collect();
-        let tool = Pose::new(arm, &State::of(arguments, angles, zeros, [0.0, 1.0])).tool;
+        let tool = Pose::new(arm, &State::of(arguments, angles, zeros, [0.0, 1.0])).tools.swap_remove(0);
         let mut most = 0.0f64;
         for i in 0..3 {
             for j in 0..4 {

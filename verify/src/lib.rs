@@ -110,7 +110,7 @@ use claims::Claims;
 use enclosure::Float;
 use equations::parameters::Vector;
 use formula::Formula;
-use program::NOMINAL_GRAVITY;
+use program::{NOMINAL_GRAVITY, TIPS};
 use reader::{Constant, Module, ModuleText};
 use report::{Report, Verdict};
 use rounding::Trial;
@@ -144,6 +144,14 @@ pub fn prepare<'a>(
     match (module.sizes().gravity, manipulator.gravity_is_argument) {
         (true, false) => return Err(format!("{NOMINAL_GRAVITY}: gravity is no argument in the description")),
         (false, true) => return Err(format!("{NOMINAL_GRAVITY} is missing: gravity is an argument in the description")),
+        _ => {}
+    }
+    match (module.constants.contains_key(TIPS), manipulator.tips.is_empty()) {
+        (true, true) => return Err(format!("{TIPS}: the end effector has no name in the description")),
+        (false, false) => return Err(format!("{TIPS} is missing: the end effectors have names in the description")),
+        (true, false) if module.constants.contains_key("TASK") => {
+            return Err(format!("TASK stands beside {TIPS}: each end effector has a task of its own"));
+        }
         _ => {}
     }
     let vector = Vector::of(&manipulator, &constants::parameter_names(&module))?;

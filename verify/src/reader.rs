@@ -26,7 +26,7 @@ use armgen_description::language::Language;
 use crate::check::{parallel_map, Check};
 use crate::contract::Sizes;
 use crate::enclosure::Float;
-use crate::program::{Program, NOMINAL_GRAVITY};
+use crate::program::{Program, NOMINAL_GRAVITY, TIPS};
 use body::Shared;
 pub(crate) use c::in_the_name_of;
 pub use constant::Constant;
@@ -112,6 +112,24 @@ fn stated<'a>(lines: impl Iterator<Item = &'a str>) -> String {
         false => all + " " + line,
     });
     joined.strip_prefix(OPTIONS).unwrap_or_default().trim_start().to_owned()
+}
+
+/// The constants of a named end effector.
+const OF_TIP: [&str; 3] = ["TASK_ROWS", "TASK", "COORDINATES"];
+
+/// The names of the end effectors in the constants of a module.
+fn tips_of(constants: &BTreeMap<String, Constant>) -> Vec<String> {
+    let Some(Constant::Array(names)) = constants.get(TIPS) else { return Vec::new() };
+    let name = |name: &Constant| match name {
+        Constant::Text(name) => Some(name.clone()),
+        _ => None,
+    };
+    names.iter().filter_map(name).collect()
+}
+
+/// The name of a constant of an end effector.
+fn constant_of(tip: &str, name: &str) -> String {
+    format!("{}_{name}", tip.to_ascii_uppercase())
 }
 
 impl Module {
@@ -213,7 +231,9 @@ impl Module {
             _ => 0,
         };
         let gravity = self.constants.contains_key(NOMINAL_GRAVITY);
-        Sizes { n: of("DOF"), p: of("PARAMETERS"), b: of("BASE_PARAMETERS"), m: of("TASK_ROWS"), gravity }
+        let tips = tips_of(&self.constants);
+        let tips = tips.into_iter().map(|tip| (tip.clone(), of(&constant_of(&tip, "TASK_ROWS")))).collect();
+        Sizes { n: of("DOF"), p: of("PARAMETERS"), b: of("BASE_PARAMETERS"), m: of("TASK_ROWS"), gravity, tips }
     }
 
     /// The programs of all readable functions, by name.

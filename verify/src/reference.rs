@@ -9,7 +9,7 @@ use crate::arithmetic::Arithmetic;
 use crate::contract::{Array, Length, Promise, Returned};
 use crate::divisors::{Matrix, Pivots};
 use crate::element::Element;
-use crate::equations::arm::{Arm, Frame};
+use crate::equations::arm::{Arm, Frame, Tip};
 use crate::equations::lagrange::{
     accelerations, along_joints, coriolis_matrix, friction, gravity, has_load_friction, inertia_derivatives, inertia_matrix,
     load_friction, potential_energy, spring_torques, times_vector, Parts,
@@ -32,12 +32,17 @@ const FRAME: Array = &[Length::Of(4), Length::Of(4)];
 const JACOBIAN: Array = &[Length::Of(6), N];
 
 const fn promise(name: &'static str, arguments: &'static [&'static str], returned: Returned) -> Promise {
-    Promise { name, arguments, returned, required: true, parameters: false }
+    Promise { name, arguments, returned, required: true, parameters: false, of_tip: false }
 }
 
 impl Promise {
     const fn with_parameters(self) -> Promise {
         Promise { parameters: true, ..self }
+    }
+
+    /// Marks a function of an end effector.
+    const fn of_an_end_effector(self) -> Promise {
+        Promise { of_tip: true, ..self }
     }
 
     /// Marks a function that an arm may lack.
@@ -48,10 +53,10 @@ impl Promise {
 
 /// All functions known to the checker, independent of the generator's catalogue; a test compares the two.
 pub const PROMISES: [Promise; 24] = [
-    promise("direct_kinematics", &["q"], Returned::One(FRAME)),
+    promise("direct_kinematics", &["q"], Returned::One(FRAME)).of_an_end_effector(),
     promise("link_frames", &["q"], Returned::One(&[N, Length::Of(4), Length::Of(4)])),
-    promise("geometric_jacobian", &["q"], Returned::One(JACOBIAN)),
-    promise("geometric_jacobian_dot", &["q", "dq"], Returned::One(JACOBIAN)),
+    promise("geometric_jacobian", &["q"], Returned::One(JACOBIAN)).of_an_end_effector(),
+    promise("geometric_jacobian_dot", &["q", "dq"], Returned::One(JACOBIAN)).of_an_end_effector(),
     promise("link_jacobians", &["q"], Returned::One(&[N, Length::Of(6), N])),
     promise("inertia_matrix", &["q"], Returned::One(SQUARE)).with_parameters(),
     promise("coriolis_matrix", &["q", "dq"], Returned::One(SQUARE)).with_parameters(),
@@ -74,32 +79,40 @@ pub const PROMISES: [Promise; 24] = [
     promise("momentum", &["q", "dq"], Returned::One(VECTOR)),
     promise("coriolis_transpose_times", &["q", "dq"], Returned::One(VECTOR)),
     promise(BASE_REGRESSOR, &["g0", "q", "dq", "ddq"], Returned::One(&[N, Length::BaseParameters])),
-    promise("operational_inertia", &["q"], Returned::One(&[Length::Task, Length::Task])).not_of_every_arm(),
+    promise("operational_inertia", &["q"], Returned::One(&[Length::Task, Length::Task])).not_of_every_arm().of_an_end_effector(),
     promise("inverse_dynamics_derivatives", &["g0", "q", "dq", "ddq"], Returned::List(&[SQUARE, SQUARE])),
     promise("forward_dynamics_derivatives", &["g0", "q", "dq", "tau"], Returned::List(&[SQUARE, SQUARE, SQUARE])),
 ];
 
 impl Promise {
-    /// The promise for a function name, and whether the name is the form with parameters.
+    /// The promise for a function name, and whether the name is the form with parameters. The name of an end effector may precede that of a
+    /// function of an end effector.
     pub fn of(name: &str) -> Option<(&'static Promise, bool)> {
         let plain = PROMISES.iter().find(|p| p.name == name).map(|p| (p, false));
         let base = name.strip_suffix("_with");
-        plain.or_else(|| PROMISES.iter().find(|p| p.parameters && Some(p.name) == base).map(|p| (p, true)))
+        let of_tip = |p: &&Promise| p.of_tip && name.strip_suffix(p.name).is_some_and(|tip| tip.len() > 1 && tip.ends_with('_'));
+        plain
+            .or_else(|| PROMISES.iter().find(|p| p.parameters && Some(p.name) == base).map(|p| (p, true)))
+            .or_else(|| PROMISES.iter().find(of_tip).map(|p| (p, false)))
     }
 
-    /// Names of the functions that every module must have.
-    pub fn required() -> Vec<String> {
-        PROMISES.iter().filter(|promise| promise.required).flat_map(Promise::names).collect()
+    /// Names of the functions that every module must have, with these beginnings for those of end effectors: one that is empty, or names.
+    pub fn required(tips: &[String]) -> Vec<String> {
+        PROMISES.iter().filter(|promise| promise.required).flat_map(|promise| promise.names(tips)).collect()
     }
 
     /// Names of the functions that an arm may lack.
-    pub fn optional() -> impl Iterator<Item = String> {
-        PROMISES.iter().filter(|promise| !promise.required).flat_map(Promise::names)
+    pub fn optional(tips: &[String]) -> impl Iterator<Item = String> + use<'_> {
+        PROMISES.iter().filter(|promise| !promise.required).flat_map(|promise| promise.names(tips))
     }
 
-    fn names(&self) -> impl Iterator<Item = String> {
+    /// The names of the function and of its form with parameters.
+    pub(crate) fn names(&self, tips: &[String]) -> Vec<String> {
         let with = self.parameters.then(|| format!("{}_with", self.name));
-        [self.name.to_string()].into_iter().chain(with)
+        match self.of_tip {
+            true => tips.iter().map(|tip| format!("{tip}{}", self.name)).collect(),
+            false => [self.name.to_string()].into_iter().chain(with).collect(),
+        }
     }
 }
 
@@ -178,7 +191,7 @@ fn of_parts<E: Element>(arm: &Arm<E>, state: &State<E>, parts: Parts<E>, values:
 fn mass<E: Element>(arm: &Arm<E>) -> E {
     let links = arm.joints.iter().map(|joint| &joint.link.mass);
     let rotors = arm.joints.iter().filter_map(|joint| joint.motor.as_ref()).map(|motor| &motor.mass);
-    let load = arm.payload.iter().map(|body| &body.mass);
+    let load = arm.tips.iter().filter_map(|tip| tip.payload.as_ref()).map(|body| &body.mass);
     links.chain(rotors).chain(load).fold(arm.zero.clone(), |sum, mass| sum.plus(mass))
 }
 
@@ -241,20 +254,26 @@ fn mobility<E: Element>(jacobian: &[E], inverse: &[Vec<E>], task: &[usize]) -> V
 }
 
 /// The permitted divisors at a state, as pivots.
-fn pivots<E: Element>(arm: &Arm<E>, run_time: Option<&Arm<E>>, state: &State<E>, task: &[usize]) -> Pivots<E> {
+fn pivots<E: Element>(arm: &Arm<E>, run_time: Option<&Arm<E>>, state: &State<E>) -> Pivots<E> {
     let b = inertia_matrix(arm, state);
-    let of_task = solve(&b, &identity(arm, arm.dof())).map(|inverse| {
-        let jacobian = Pose::new(arm, state).geometric_jacobian(arm.tip);
-        (Matrix::Mobility, mobility(&jacobian, &inverse, task))
+    let inverse = solve(&b, &identity(arm, arm.dof()));
+    let of_tasks = inverse.iter().flat_map(|inverse| {
+        let pose = Pose::new(arm, state);
+        let of_task = move |(number, tip): (usize, &Tip<E>)| {
+            (Matrix::Mobility(number), mobility(&pose.geometric_jacobian(number, tip.link), inverse, &tip.task))
+        };
+        arm.tips.iter().enumerate().map(of_task)
     });
+    let of_tasks: Vec<_> = of_tasks.collect();
     let with = run_time.map(|arm| (Matrix::InertiaWith, inertia_matrix(arm, state)));
     let mass = Some((Matrix::Mass, vec![vec![mass(arm)]]));
     let mass_with = run_time.map(|arm| (Matrix::MassWith, vec![vec![self::mass(arm)]]));
-    Pivots::of([Some((Matrix::Inertia, b)), with, of_task, mass, mass_with].into_iter().flatten().collect())
+    let others = [Some((Matrix::Inertia, b)), with].into_iter().chain(of_tasks.into_iter().map(Some)).chain([mass, mass_with]);
+    Pivots::of(others.flatten().collect(), arm.tips.iter().map(|tip| tip.prefix.clone()).collect())
 }
 
 /// The derivatives of the dynamics, and the inertia in the task rows if the arm moves these independently.
-fn derivatives_and_task<E: Element>(arm: &Arm<E>, state: &State<E>, task: &[usize], values: &mut Values<E>) -> Option<()> {
+fn derivatives_and_tasks<E: Element>(arm: &Arm<E>, state: &State<E>, values: &mut Values<E>) -> Option<()> {
     let n = arm.dof();
     let b = inertia_matrix(arm, state);
     let inverse = solve(&b, &identity(arm, n))?;
@@ -267,9 +286,11 @@ fn derivatives_and_task<E: Element>(arm: &Arm<E>, state: &State<E>, task: &[usiz
             })
             .collect()
     };
-    let mobility = mobility(&values["geometric_jacobian"], &inverse, task);
-    if let Some(inertia) = solve(&mobility, &identity(arm, task.len())) {
-        values.insert("operational_inertia".into(), inertia.concat());
+    for Tip { prefix, task, .. } in &arm.tips {
+        let mobility = mobility(&values[&format!("{prefix}geometric_jacobian")], &inverse, task);
+        if let Some(inertia) = solve(&mobility, &identity(arm, task.len())) {
+            values.insert(format!("{prefix}operational_inertia"), inertia.concat());
+        }
     }
     let (by_q, by_dq) = (torque_derivatives(arm, state, By::Variables), torque_derivatives(arm, state, By::Rates));
     values.insert("inverse_dynamics_derivatives".into(), [by_q.concat(), by_dq.concat()].concat());
@@ -286,10 +307,8 @@ fn derivatives_and_task<E: Element>(arm: &Arm<E>, state: &State<E>, task: &[usiz
 
 fn kinematics<E: Element>(arm: &Arm<E>, state: &State<E>, values: &mut Values<E>) {
     let pose = Pose::new(arm, state);
-    values.insert("direct_kinematics".into(), pose.homogeneous(&pose.tool, &arm.one));
     let frames = pose.links.iter().flat_map(|frame| pose.homogeneous(frame, &arm.one)).collect();
     values.insert("link_frames".into(), frames);
-    values.insert("geometric_jacobian".into(), pose.geometric_jacobian(arm.tip));
     let of_link = |(i, link): (usize, &Frame<E>)| {
         let columns = pose.jacobian(Some(i), &link.origin);
         let rows = |of: fn(&(Vector3<E>, Vector3<E>)) -> &Vector3<E>| -> Vec<E> {
@@ -300,8 +319,13 @@ fn kinematics<E: Element>(arm: &Arm<E>, state: &State<E>, values: &mut Values<E>
     values.insert("link_jacobians".into(), pose.links.iter().enumerate().flat_map(of_link).collect());
     let moving = arm.map(&|e| Dual::constant(e));
     let along = state.moving(&state.dq, &vec![arm.zero.clone(); arm.dof()]);
-    let rates = Pose::new(&moving, &along).geometric_jacobian(arm.tip).into_iter().map(|entry| entry.rate);
-    values.insert("geometric_jacobian_dot".into(), rates.collect());
+    let moving = Pose::new(&moving, &along);
+    for (number, Tip { prefix, link, .. }) in arm.tips.iter().enumerate() {
+        values.insert(format!("{prefix}direct_kinematics"), pose.homogeneous(&pose.tools[number], &arm.one));
+        values.insert(format!("{prefix}geometric_jacobian"), pose.geometric_jacobian(number, *link));
+        let rates = moving.geometric_jacobian(number, *link).into_iter().map(|entry| entry.rate);
+        values.insert(format!("{prefix}geometric_jacobian_dot"), rates.collect());
+    }
 }
 
 /// The wanted parts of a reference.
@@ -357,13 +381,12 @@ impl<E: Element> Reference<E> {
         kinematics(&arm, &state, &mut values);
         if manipulator.is_massless() {
             // Without accelerations, only the equations of kinematics apply.
-            let none = || Pivots::of(Vec::new());
+            let none = || Pivots::of(Vec::new(), Vec::new());
             let pivots = wanted.pivots.then(|| (none(), State::draw(arithmetic, n), none()));
             return Ok(Reference { state, values, elsewhere: None, nominal: None, two_derivations_agree: true, pivots });
         }
         let mut agree = quantities(&arm, &state, &mut values, "").ok_or_else(singular)?;
-        let task = manipulator.task_rows();
-        derivatives_and_task(&arm, &state, &task, &mut values).ok_or_else(singular)?;
+        derivatives_and_tasks(&arm, &state, &mut values).ok_or_else(singular)?;
 
         let Linear { columns, known, run_time, other, nominal, elsewhere } = match vector {
             Vector::Names(ids) => of_names(arithmetic, manipulator, &arm, &nominal_values, ids, &mut state, wanted)?,
@@ -384,7 +407,7 @@ impl<E: Element> Reference<E> {
             let (other, pi) = other.unzip();
             let drawn = State::draw(arithmetic, n).with_gravity(arithmetic, manipulator.gravity_is_argument);
             let there = State { pi: pi.unwrap_or_default(), ..drawn };
-            let at = |run_time: Option<&Arm<E>>, state: &State<E>| pivots(&arm, run_time, state, &task);
+            let at = |run_time: Option<&Arm<E>>, state: &State<E>| pivots(&arm, run_time, state);
             (at(run_time.as_ref(), &state), there.clone(), at(other.as_ref(), &there))
         });
         Ok(Reference { state, values, elsewhere, nominal, two_derivations_agree: agree, pivots })

@@ -36,7 +36,7 @@ use crate::bounds::{corner, draw, symmetric, two_digits};
 use crate::check::Check;
 use crate::checker::Checker;
 use crate::companion::{LaneArguments, LaneTable, Table};
-use crate::contract::{Length, Promise};
+use crate::contract::{tip_of, Length, Promise};
 use crate::divisors::undivided_operands;
 use crate::enclosure::Float;
 use crate::equations::parameters::{units, Unit};
@@ -291,9 +291,11 @@ impl PlainBounds {
 
 /// The kinds of the entries of a function: one number for those of one part whose indices are of the same sort.
 fn kinds(function: &str, checker: &Checker) -> Vec<usize> {
-    let (manipulator, sizes) = (checker.manipulator(), checker.sizes());
+    let (manipulator, sizes) = (checker.manipulator(), checker.sizes().of_function(function));
+    let of_tip = tip_of(function).and_then(|tip| manipulator.tips.iter().find(|own| own.name.eq_ignore_ascii_case(tip)));
+    let task = of_tip.map_or(&manipulator.task, |tip| &tip.task);
     let base = checker.base().map(|own| units(own.named.iter().map(|(parameter, _)| *parameter))).unwrap_or_default();
-    let (columns, rows) = (checker.vector().units(), manipulator.task_rows());
+    let columns = checker.vector().units();
     let of_unit = |unit: Unit| match unit {
         Unit::Mass => 0,
         Unit::Moment => 1,
@@ -304,7 +306,7 @@ fn kinds(function: &str, checker: &Checker) -> Vec<usize> {
         Length::Dof => usize::from(manipulator.joints[index].kind == JointKind::Revolute),
         Length::Parameters => of_unit(columns[index]),
         Length::BaseParameters => of_unit(base[index]),
-        Length::Task => rows[index] / 3,
+        Length::Task => task[index].index() / 3,
         // Rows of a Jacobian, linear and angular; rotation, origin and last row of a frame; a point.
         Length::Of(_) => index / 3,
     };

@@ -160,6 +160,7 @@ fn of_description(manipulator: &Manipulator) -> Hash {
         task,
         regressor,
         inverse_kinematics: _,
+        tips,
     } = manipulator;
     parameters.iter().for_each(|parameter| arm.number(&parameter.nominal));
     arm.polynomials(gravity);
@@ -221,6 +222,14 @@ fn of_description(manipulator: &Manipulator) -> Hash {
     if let Some(payload) = payload {
         arm.word("payload");
         arm.part(payload);
+    }
+    for tip in tips {
+        arm.word(&format!("{} {:?} {:?}", tip.name, tip.joint, tip.task));
+        arm.pose(&tip.tool);
+        if let Some(payload) = &tip.payload {
+            arm.word("payload");
+            arm.part(payload);
+        }
     }
     match regressor {
         RegressorChoice::Standard => arm.word("standard"),

@@ -113,7 +113,12 @@ struct Kit {
 
 impl Kit {
     fn of(manipulator: &Manipulator, module: &Module) -> Result<Kit, String> {
-        let missing = Promise::required().into_iter().find(|name| module.program(name).is_none());
+        if !manipulator.tips.is_empty() {
+            return Err(
+                "a test file is for an arm with one end effector; `armgen verify` proves the functions of each of several".into(),
+            );
+        }
+        let missing = Promise::required(&[String::new()]).into_iter().find(|name| module.program(name).is_none());
         if let Some(name) = missing {
             let why = if manipulator.is_massless() { ": nothing in the arm has mass or inertia" } else { "" };
             return Err(format!("a test file is for all functions, and the module has no `{name}`{why}"));
@@ -124,7 +129,7 @@ impl Kit {
         let mut stream = Stream::new(20_240_229);
         let present = |name: &str| module.functions.iter().any(|(f, _)| f == name);
         let (states, values, loaded) = (Vec::new(), Vec::new(), present("load_friction"));
-        let mut kit = Kit { robot: manipulator.name.clone(), real: module.real, sizes, states, values, loaded };
+        let mut kit = Kit { robot: manipulator.name.clone(), real: module.real, sizes: sizes.clone(), states, values, loaded };
         for index in 0..STATES {
             let arguments = arguments(&mut stream, &sizes);
             let state = wide_state(&arguments, manipulator).ok_or("a joint variable out of reach")?;

@@ -22,7 +22,7 @@ fn the_checker_and_the_catalogue_know_the_same_functions() {
     let declared: Vec<&str> = catalogue::quantities().map(|quantity| quantity.name).collect();
     let known: Vec<&str> = PROMISES.iter().map(|promise| promise.name).collect();
     assert_eq!(known, declared);
-    let sizes = armgen_verify::contract::Sizes { n: 2, p: 3, b: 4, m: 5, gravity: false };
+    let sizes = armgen_verify::contract::Sizes { n: 2, p: 3, b: 4, m: 5, gravity: false, tips: Vec::new() };
     for (promise, quantity) in PROMISES.iter().zip(catalogue::quantities()) {
         let name = promise.name;
         let arguments: Vec<&str> = quantity.arguments.iter().copied().map(Argument::name).collect();

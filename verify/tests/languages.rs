@@ -350,3 +350,20 @@ fn functions_with_gravity_as_an_argument_have_the_bits_of_rust() {
         run::check_with("mounted", &source, &options, 200, run::Effort::Short);
     }
 }
+
+#[test]
+#[ignore = "wide"]
+fn functions_of_several_end_effectors_have_the_bits_of_rust() {
+    let tips = "tips:\n  - {name: left_hand, joint: left_3, tool: {xyz: [0, 0, -0.25]}, task: [x, y, z]}\n  \
+                - {name: Camera, joint: torso, tool: {rpy: [0, 0.3, 0]}, task: [rz]}\n  \
+                - {name: right_hand, joint: right_3, payload: {mass: 2, com: [0, 0, -0.1]}}\n";
+    let robot = include_str!("../../tests/data/trees/two_arms.yaml");
+    let lines = robot.lines().filter(|line| !line.starts_with("tool:"));
+    let text = lines.map(|line| format!("{line}\n")).collect::<String>() + tips;
+    let source = Source::new("two_arms.yaml", text);
+    for scalar in [Scalar::F64, Scalar::F32] {
+        #[allow(clippy::needless_update)]
+        let options = Options { scalar, trig: Trig::Fast, ..Options::default() };
+        run::check_with("two_arms", &source, &options, 100, run::Effort::Short);
+    }
+}

@@ -99,9 +99,9 @@ fn import(request: &Value, source: &Source) -> Value {
 
 /// The functions of the catalogue, and what `armgen show` has besides.
 fn functions(model: &Model) -> Vec<Value> {
-    catalogue::functions()
+    catalogue::functions_of(&model.manipulator.tips)
         .map(|(quantity, with)| {
-            let missing = (quantity.missing)(model, with);
+            let missing = quantity.absence(model, with);
             json!({ "name": quantity.function_name(with), "title": quantity.documentation.title, "missing": missing })
         })
         .collect()

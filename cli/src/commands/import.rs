@@ -22,9 +22,12 @@ pub(crate) struct Choices {
     /// The link that does not move; the root of the file if not given
     #[arg(long, value_name = "LINK")]
     base: Option<String>,
-    /// The link whose frame is the end effector's; needed where several may be
-    #[arg(long, value_name = "LINK")]
-    tip: Option<String>,
+    /// The link whose frame is the end effector's; needed where several may be. Several times, or with a name, for several end effectors
+    #[arg(long, value_name = "[NAME=]LINK")]
+    tip: Vec<String>,
+    /// Every joint below the base, and an end effector on each link that ends a branch
+    #[arg(long, conflicts_with = "tip")]
+    all: bool,
     /// A joint that stands still, and where: an expression such as 0.04 or pi/4
     #[arg(long, value_name = "JOINT=VALUE", value_parser = lock, allow_hyphen_values = true)]
     lock: Vec<(String, String)>,
@@ -48,6 +51,21 @@ pub(crate) struct Choices {
 fn lock(text: &str) -> Result<(String, String), String> {
     let (joint, value) = text.rsplit_once('=').ok_or("write JOINT=VALUE")?;
     Ok((joint.to_owned(), value.to_owned()))
+}
+
+/// The link of the only end effector, or the links of several with their names.
+fn tips_of(given: Vec<String>) -> (Option<String>, Vec<(Option<String>, String)>) {
+    match &given[..] {
+        [] => (None, Vec::new()),
+        [only] if !only.contains('=') => (Some(only.clone()), Vec::new()),
+        several => {
+            let named = several.iter().map(|tip| match tip.split_once('=') {
+                Some((name, link)) => (Some(name.to_owned()), link.to_owned()),
+                None => (None, tip.clone()),
+            });
+            (None, named.collect())
+        }
+    }
 }
 
 fn tolerance(text: &str) -> Result<f64, String> {
@@ -116,8 +134,10 @@ pub(crate) fn run(file: &Path, choices: Choices, results: &Results) -> u8 {
         terminal::error("--name takes letters, digits and `_`, a letter first");
         return UNREADABLE;
     }
-    let Choices { base, tip, lock, name, snap, massless, inertia_as_written, convention } = choices;
-    let options = Options { base, tip, lock, name, snap, massless, inertia_as_written, convention: convention.into() };
+    let Choices { base, tip, all, lock, name, snap, massless, inertia_as_written, convention } = choices;
+    let (tip, tips) = tips_of(tip);
+    let convention = convention.into();
+    let options = Options { base, tip, tips, all, lock, name, snap, massless, inertia_as_written, convention };
     let (imported, diagnostics) = armgen_import::import(&source, &options);
     let imported = match input::report_or_exit_code(&source, imported, &diagnostics, input::Warnings::Shown) {
         Ok(imported) => imported,

@@ -14,7 +14,7 @@
 use super::parameters::{second_moments, Inertial, StandardParameter, View};
 use crate::exact::Number;
 use crate::kinds::JointKind;
-use crate::manipulator::{Manipulator, Placement};
+use crate::manipulator::{Manipulator, Placement, Pose};
 use crate::ring::matrix::{transpose, Matrix, Vector, ZERO};
 use crate::ring::{ExprId, Pool, Symbol};
 
@@ -94,6 +94,17 @@ pub struct Joint {
     pub rest: ExprId,
 }
 
+/// The frame of an end effector.
+#[derive(Clone, Copy, Debug)]
+pub struct Tool {
+    /// Index of the link that carries it.
+    pub link: usize,
+    /// Its rotation in the joint frame of that link.
+    pub rotation: Matrix,
+    /// Its origin there.
+    pub origin: Vector,
+}
+
 /// The arm.
 #[derive(Clone, Debug)]
 pub struct Arm {
@@ -101,12 +112,10 @@ pub struct Arm {
     pub joints: Vec<Joint>,
     /// Acceleration of free fall in the base frame: numbers, or symbols where it is an argument.
     pub gravity: Vector,
-    /// Index of the link that carries the end effector.
-    pub tip: usize,
-    /// End-effector frame in the tip's joint frame: rotation.
-    pub tool_rotation: Matrix,
-    /// End-effector frame in the tip's joint frame: origin.
-    pub tool_origin: Vector,
+    /// The end effector.
+    pub tool: Tool,
+    /// The frames of payloads, those of the end effectors that have any.
+    pub loads: Vec<Tool>,
     /// First moment, in the base frame, of the rotors that ride on the base: a constant of the potential energy.
     pub base_moment: Vector,
 }
@@ -245,25 +254,23 @@ impl Joint {
 impl Arm {
     /// The arm in a pool. `view` decides how parameters enter.
     pub fn new(pool: &mut Pool, manipulator: &Manipulator, view: View<'_>) -> Arm {
-        let joints = (0..manipulator.joints.len()).map(|i| joint(pool, manipulator, view, i)).collect();
+        let joints: Vec<Joint> = (0..manipulator.joints.len()).map(|i| joint(pool, manipulator, view, i)).collect();
         let gravity = if manipulator.gravity_is_argument {
             [0, 1, 2].map(|axis| pool.symbol(Symbol::Gravity(axis)))
         } else {
             manipulator.gravity.clone().map(|g| view.polynomial(pool, manipulator, &g))
         };
-        let tip = super::parameters::tip(manipulator);
-        let mut arm =
-            Arm { joints, gravity, tip, tool_rotation: crate::ring::matrix::IDENTITY, tool_origin: ZERO, base_moment: ZERO };
-        let (rotation, origin) = placement(pool, manipulator, view, &manipulator.tool.frame);
-        let last = arm.joints[tip];
-        arm.tool_rotation = pool.product(&last.link_rotation, &rotation);
-        let turned = pool.transform(&last.link_rotation, &origin);
-        arm.tool_origin = pool.add_vectors(&turned, &last.link_origin);
-        if manipulator.payload.is_some() && !view.bodies_in_joint_frames() {
-            let payload = inertial_body(pool, manipulator, view, StandardParameter::Payload);
-            let payload = payload.turned(pool, &arm.tool_rotation);
-            let payload = payload.moved(pool, &arm.tool_origin);
-            arm.joints[tip].body = arm.joints[tip].body.plus(pool, &payload);
+        let own = tool(pool, manipulator, view, &joints, manipulator.tip.index(), &manipulator.tool);
+        let mut arm = Arm { joints, gravity, tool: own, loads: Vec::new(), base_moment: ZERO };
+        for (load, number) in manipulator.loads().into_iter().zip(0..) {
+            let Tool { link, rotation, origin } = tool(pool, manipulator, view, &arm.joints, load.link, load.tool);
+            arm.loads.push(Tool { link, rotation, origin });
+            if !view.bodies_in_joint_frames() {
+                let payload = inertial_body(pool, manipulator, view, |k| StandardParameter::Payload(number, k));
+                let payload = payload.turned(pool, &rotation);
+                let payload = payload.moved(pool, &origin);
+                arm.joints[link].body = arm.joints[link].body.plus(pool, &payload);
+            }
         }
         for i in 0..arm.joints.len() {
             add_rotor(pool, manipulator, view, &mut arm, i);
@@ -279,6 +286,11 @@ impl Arm {
     /// Whether each joint is on the link of the joint before it.
     pub fn is_chain(&self) -> bool {
         self.joints.iter().enumerate().all(|(i, joint)| joint.parent == i.checked_sub(1))
+    }
+
+    /// The frames of the end effector and of payloads that a link carries.
+    pub(super) fn tools_of(&mut self, link: usize) -> impl Iterator<Item = &mut Tool> {
+        std::iter::once(&mut self.tool).chain(&mut self.loads).filter(move |tool| tool.link == link)
     }
 
     /// The links from the base to a link.
@@ -339,8 +351,8 @@ impl Arm {
         joint.body = joint.body.moved(pool, &[ExprId::ZERO, ExprId::ZERO, -shift]);
         joint.link_origin[2] = pool.sub(joint.link_origin[2], shift);
         joint.own_origin[2] = pool.sub(joint.own_origin[2], shift);
-        if self.tip == i {
-            self.tool_origin[2] = pool.sub(self.tool_origin[2], shift);
+        for tool in self.tools_of(i) {
+            tool.origin[2] = pool.sub(tool.origin[2], shift);
         }
         for joint in self.joints.iter_mut().filter(|joint| joint.parent == Some(i)) {
             joint.origin[2] = pool.sub(joint.origin[2], shift);
@@ -387,6 +399,15 @@ fn numbers(pool: &mut Pool, matrix: &[[Number; 3]; 3]) -> Matrix {
 fn placement(pool: &mut Pool, manipulator: &Manipulator, view: View<'_>, placement: &Placement) -> (Matrix, Vector) {
     let translation = placement.translation.clone().map(|t| view.polynomial(pool, manipulator, &t));
     (numbers(pool, &placement.rotation), translation)
+}
+
+/// The frame of an end effector.
+fn tool(pool: &mut Pool, manipulator: &Manipulator, view: View<'_>, joints: &[Joint], link: usize, pose: &Pose) -> Tool {
+    let (rotation, origin) = placement(pool, manipulator, view, &pose.frame);
+    let carrier = &joints[link];
+    let rotation = pool.product(&carrier.link_rotation, &rotation);
+    let turned = pool.transform(&carrier.link_rotation, &origin);
+    Tool { link, rotation, origin: pool.add_vectors(&turned, &carrier.link_origin) }
 }
 
 /// The ten parameters of a body as mass, first and second moments.
@@ -446,7 +467,7 @@ fn joint(pool: &mut Pool, manipulator: &Manipulator, view: View<'_>, i: usize) -
     }
     Joint {
         kind: joint.kind,
-        parent: joint.parent.map(|parent| parent.0 as usize),
+        parent: joint.parent.map(|parent| parent.index()),
         fixed,
         sine,
         cosine,

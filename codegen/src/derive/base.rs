@@ -456,7 +456,7 @@ fn candidates(manipulator: &Manipulator, convention: GroupingConvention) -> Vec<
                 ![Inertial::M, Inertial::Mcz, Inertial::Iyy].contains(&k)
             }
             StandardParameter::Link(_, k) => k <= Inertial::Mcz,
-            StandardParameter::Payload(_) => false,
+            StandardParameter::Payload(..) => false,
             _ => true,
         })
         .map(left)
@@ -593,6 +593,6 @@ fn preference(parameter: StandardParameter) -> (u8, u16, u8) {
         StandardParameter::Link(i, k) => (1, i, of_body(k)),
         StandardParameter::RotorInertia(i) => (2, i, 0),
         StandardParameter::Armature(i) => (2, i, 1),
-        StandardParameter::Payload(k) => (3, 0, k as u8),
+        StandardParameter::Payload(number, k) => (3, u16::from(number), k as u8),
     }
 }

@@ -21,12 +21,14 @@ pub fn find_field(manipulator: &Manipulator) -> Option<Field> {
 /// All exact constants of a description.
 fn constants(manipulator: &Manipulator) -> Vec<Number> {
     let mut numbers = Vec::new();
+    let loads: Vec<_> = manipulator.loads().into_iter().map(|load| load.body).collect();
     for joint in &manipulator.joints {
-        for placement in [&joint.placement, &joint.link_frame, &manipulator.tool.frame] {
+        let tools = manipulator.ends().into_iter().map(|(_, tool)| &tool.frame);
+        for placement in [&joint.placement, &joint.link_frame].into_iter().chain(tools) {
             numbers.extend(placement.rotation.iter().flatten().cloned());
             numbers.extend(placement.translation.iter().flat_map(|p| p.terms().map(|(_, c)| c.clone())));
         }
-        for part in joint.link.iter().chain(&manipulator.payload) {
+        for part in joint.link.iter().chain(loads.iter().copied()) {
             let body = &part.body;
             let all = std::iter::once(&body.mass).chain(&body.com).chain(&body.inertia);
             numbers.extend(all.flat_map(|p| p.terms().map(|(_, c)| c.clone())));

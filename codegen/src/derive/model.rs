@@ -41,6 +41,11 @@ impl Model {
         Model { manipulator, field, parameters, base: OnceLock::new() }
     }
 
+    /// The same with one of its named end effectors as the one that its equations are of.
+    pub fn at(&self, tip: usize) -> Model {
+        Model { manipulator: self.manipulator.at(tip), ..self.clone() }
+    }
+
     /// The base parameters, the masses of rotors among their values.
     pub fn base_parameters(&self) -> &ParameterVector {
         self.base.get_or_init(|| base::base_parameters_with_rotors(&self.manipulator, &self.field))

@@ -4,7 +4,7 @@ use std::cell::RefCell;
 
 use crate::exact::{Number, Polynomial, Rational};
 use crate::kinds::ParameterId;
-use crate::manipulator::{Body, LinkId, Manipulator, PlacedBody, Placement, Row};
+use crate::manipulator::{Body, Manipulator, PlacedBody, Placement, Row};
 use crate::ring::{ExprId, Pool, Symbol};
 
 /// One of the parameters in which the dynamics of every arm are linear.
@@ -30,8 +30,8 @@ pub enum StandardParameter {
     Stribeck(u16),
     /// Stiffness of the spring of a joint.
     Stiffness(u16),
-    /// One of the payload, in the end-effector frame.
-    Payload(Inertial),
+    /// One of a payload, by its number, in the frame of its end effector.
+    Payload(u8, Inertial),
 }
 
 /// An inertial parameter of a body in a frame: mass, first moments m c, moments and products of inertia about the frame's origin.
@@ -165,8 +165,8 @@ impl StandardParameter {
                 all.push(StandardParameter::Stiffness(i));
             }
         }
-        if manipulator.payload.is_some() {
-            all.extend(Inertial::TEN.map(StandardParameter::Payload));
+        for (_, number) in manipulator.loads().iter().zip(0..) {
+            all.extend(Inertial::TEN.map(|k| StandardParameter::Payload(number, k)));
         }
         all
     }
@@ -184,8 +184,17 @@ impl StandardParameter {
             StandardParameter::Cubic(i) => format!("F3_{}", i + 1),
             StandardParameter::Stribeck(i) => format!("Fs{}", i + 1),
             StandardParameter::Stiffness(i) => format!("ks{}", i + 1),
-            StandardParameter::Payload(k) => format!("{}p", k.name()),
+            StandardParameter::Payload(_, k) => format!("{}p", k.name()),
         }
+    }
+
+    /// The same with the name of the end effector before that of a payload's, where it has a name.
+    pub fn full_name(self, manipulator: &Manipulator) -> String {
+        let of = match self {
+            StandardParameter::Payload(number, _) => manipulator.loads()[usize::from(number)].of,
+            _ => None,
+        };
+        of.map_or(String::new(), |tip| format!("{tip}_")) + &self.name()
     }
 
     /// The value or the bodies that give it.
@@ -203,7 +212,9 @@ impl StandardParameter {
             StandardParameter::Cubic(i) => Entry::Whole(joint(i).cubic.as_ref()),
             StandardParameter::Stribeck(i) => Entry::Whole(joint(i).stribeck.as_ref().map(|stribeck| &stribeck.torque)),
             StandardParameter::Stiffness(i) => Entry::Whole(joint(i).spring.as_ref().map(|spring| &spring.stiffness)),
-            StandardParameter::Payload(k) => Entry::OfBodies(manipulator.payload.as_slice(), k),
+            StandardParameter::Payload(number, k) => {
+                Entry::OfBodies(std::slice::from_ref(manipulator.loads()[usize::from(number)].body), k)
+            }
         }
     }
 
@@ -423,7 +434,11 @@ impl ParameterVector {
         let columns = StandardParameter::all(manipulator);
         let entries = columns
             .iter()
-            .map(|&p| Parameter { name: p.name(), nominal: p.nominal(manipulator), meaning: p.meaning(manipulator) })
+            .map(|&p| Parameter {
+                name: p.full_name(manipulator),
+                nominal: p.nominal(manipulator),
+                meaning: p.meaning(manipulator),
+            })
             .collect();
         ParameterVector { entries, kind: ParameterKind::Standard(columns) }
     }
@@ -470,7 +485,10 @@ impl StandardParameter {
                 format!("joint {} ({}): Stribeck friction at the lowest rates, N m or N", i + 1, name(i))
             }
             StandardParameter::Stiffness(i) => format!("joint {} ({}): stiffness of its spring, N m/rad or N/m", i + 1, name(i)),
-            StandardParameter::Payload(k) => format!("payload, in the end-effector frame: {}", k.meaning()),
+            StandardParameter::Payload(number, k) => match manipulator.loads()[usize::from(number)].of {
+                Some(tip) => format!("payload of {tip}, in its frame: {}", k.meaning()),
+                None => format!("payload, in the end-effector frame: {}", k.meaning()),
+            },
         }
     }
 }
@@ -485,10 +503,4 @@ pub fn second_moments(pool: &mut Pool, inertia: &[ExprId; 6]) -> [ExprId; 6] {
         pool.mul(half, twice)
     };
     [diagonal([yy, zz], xx), -xy, diagonal([xx, zz], yy), -xz, -yz, diagonal([xx, yy], zz)]
-}
-
-/// The link that carries the end effector, as an index.
-pub fn tip(manipulator: &Manipulator) -> usize {
-    let LinkId(tip) = manipulator.tip;
-    tip as usize
 }

@@ -1,12 +1,13 @@
 //! A quantity: the language-independent declaration of an emitted function, and its derivation by recursion over the links.
 //!
-//! Each is declared once, in the file of its derivation (`quantities/`). Code that prints, counts, documents or tests functions
+//! Each is declared once, in the file of its derivation (`quantities/`); [`Quantity::of_tip`] makes those of a named end effector. Code that prints, counts, documents or tests functions
 //! reads the declaration of every [`Quantity`], and knows no function by name.
 //!
 //! Texts of documentation hold links in braces: `{gravity}` is a function, `{q}` an argument, `{PARAMETER_NAMES}` a constant of the module,
 //! each in the notation of a language. Text between back quotes is code, the same in all languages.
 
 use std::collections::BTreeMap;
+use std::sync::{Mutex, PoisonError};
 
 use super::arm::Arm;
 use super::derivation::{Derivation, OVER_GROUPED_BODIES, OVER_THE_LINKS};
@@ -14,6 +15,7 @@ use super::model::{Model, Sizes};
 use super::parameters::View;
 use super::passes::{self, RewriteScope};
 use super::plan::{Plan, Start};
+use crate::manipulator::Tip;
 use crate::pass::{Pass, Passes};
 use crate::ring::count::{DIVISION_COST, SINE_COSINE_COST};
 use crate::ring::{ExprId, Pool};
@@ -36,7 +38,7 @@ pub struct Quantity {
     pub documentation: Documentation,
     /// Its derivation.
     pub recursion: Recursion,
-    /// Why an arm does not have the function, or its form with parameters at run time, if it does not.
+    /// Why an arm does not have the function, or its form with parameters at run time, if it does not: by [`Quantity::absence`].
     pub missing: fn(&Model, bool) -> Option<String>,
     /// Quantities whose values this one returns together; empty for all others.
     pub gathers: &'static [&'static Quantity],
@@ -115,6 +117,8 @@ pub enum Length {
     Task,
     /// That number.
     Fixed(usize),
+    /// That number, in the constant of this name: the rows of the task of a named end effector.
+    Named(&'static str, usize),
 }
 
 /// An argument of an emitted function.
@@ -178,6 +182,7 @@ pub struct Documentation {
 }
 
 /// The derivation of a quantity by recursion over the links.
+#[derive(Clone, Copy)]
 pub struct Recursion {
     /// The entries of all parts, row by row, for an arm in a pool.
     pub entries: fn(&mut Pool, &Arm, &mut Plan, &DerivationInput<'_>) -> Vec<ExprId>,
@@ -191,6 +196,19 @@ pub struct Recursion {
     pub without: &'static [Pass],
     /// Where searches for its plan start.
     pub starts: &'static [Start],
+    /// What it is of.
+    pub of: Of,
+}
+
+/// What a quantity is of.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Of {
+    /// The robot.
+    Robot,
+    /// The end effector; a robot whose end effectors have names has it once for each.
+    EndEffector,
+    /// The named end effector of this number.
+    Tip(usize),
 }
 
 /// The arm that a derivation is for, and how its parameters enter.
@@ -258,7 +276,7 @@ impl Recursion {
         fn as_asked<'a>(_: &'a Model, view: View<'a>) -> View<'a> {
             view
         }
-        Recursion { entries, rewriting, view: as_asked, prepare: |_, _| (), without: &[], starts: &[Start::PLAIN] }
+        Recursion { entries, rewriting, view: as_asked, prepare: |_, _| (), without: &[], starts: &[Start::PLAIN], of: Of::Robot }
     }
 }
 
@@ -301,7 +319,7 @@ impl Length {
             Length::Parameters => sizes.parameters,
             Length::BaseParameters => sizes.base_parameters,
             Length::Task => sizes.task,
-            Length::Fixed(value) => value,
+            Length::Fixed(value) | Length::Named(_, value) => value,
         }
     }
 
@@ -313,6 +331,7 @@ impl Length {
             Length::BaseParameters => "BASE_PARAMETERS".into(),
             Length::Task => "TASK_ROWS".into(),
             Length::Fixed(value) => value.to_string(),
+            Length::Named(constant, _) => constant.into(),
         }
     }
 }
@@ -385,6 +404,50 @@ impl Quantity {
     pub const MISSING_WITHOUT_MASS: fn(&Model, bool) -> Option<String> =
         |model, _| model.manipulator.is_massless().then(|| "nothing in the arm has mass or inertia".into());
 
+    /// Why an arm does not have the function, or its form with parameters at run time, if it does not.
+    pub fn absence(&self, model: &Model, with_parameters: bool) -> Option<String> {
+        match self.recursion.of {
+            Of::Tip(tip) => (self.missing)(&model.at(tip), with_parameters),
+            Of::Robot | Of::EndEffector => (self.missing)(model, with_parameters),
+        }
+    }
+
+    /// The same quantity of the named end effector of that number, with its name before its own.
+    ///
+    /// Each is made once and kept as long as the program runs, as those of the catalogue are: a few hundred bytes for a name that a
+    /// description gives.
+    pub fn of_tip(&'static self, number: usize, tip: &Tip) -> &'static Quantity {
+        type Key = (&'static str, String, usize, usize);
+        static ALL: Mutex<BTreeMap<Key, &'static Quantity>> = Mutex::new(BTreeMap::new());
+        let mut all = ALL.lock().unwrap_or_else(PoisonError::into_inner);
+        all.entry((self.name, tip.name.clone(), number, tip.task.len())).or_insert_with(|| {
+            let kept = |text: String| -> &'static str { Box::leak(text.into_boxed_str()) };
+            let task = tip.constant("TASK");
+            let said = |text: &str| kept(text.replace("{TASK}", &format!("{{{task}}}")));
+            let length = |length: &Length| match length {
+                Length::Task => Length::Named(kept(tip.constant("TASK_ROWS")), tip.task.len()),
+                other => *other,
+            };
+            let result = self.result.iter().map(|part| {
+                let lengths: Vec<Length> = part.lengths.iter().map(length).collect();
+                ResultPart { lengths: Box::leak(lengths.into_boxed_slice()), ..*part }
+            });
+            let documentation = Documentation {
+                title: kept(format!("{} End effector: `{}`.", self.documentation.title, tip.name)),
+                formula: said(self.documentation.formula),
+                result: said(self.documentation.result),
+                ..self.documentation
+            };
+            Box::leak(Box::new(Quantity {
+                name: kept(tip.prefix() + self.name),
+                result: Box::leak(result.collect::<Vec<_>>().into_boxed_slice()),
+                documentation,
+                recursion: Recursion { of: Of::Tip(number), ..self.recursion },
+                ..*self
+            }))
+        })
+    }
+
     /// The arguments of its function for an arm, in order.
     pub fn arguments_of(&self, with_parameters: bool, gravity_is_argument: bool) -> impl Iterator<Item = Argument> {
         let there = move |argument: &Argument| *argument != Argument::Gravity || gravity_is_argument;
@@ -452,7 +515,12 @@ impl Quantity {
     }
 
     pub(crate) fn by_plan(&self, model: &Model, view: View<'_>, mut plan: Plan, effort: usize) -> Derivation {
-        let Recursion { entries, rewriting, view: own_view, prepare, without, starts } = self.recursion;
+        let of_tip = match self.recursion.of {
+            Of::Tip(tip) => Some(model.at(tip)),
+            Of::Robot | Of::EndEffector => None,
+        };
+        let model = of_tip.as_ref().unwrap_or(model);
+        let Recursion { entries, rewriting, view: own_view, prepare, without, starts, .. } = self.recursion;
         let input = DerivationInput { model, view: own_view(model, view) };
         let rewriting = match (rewriting, input.view) {
             (RewriteScope::Dynamics, View::Nominal) => RewriteScope::Dynamics,

@@ -86,7 +86,7 @@ fn columns_in(
     let motions = link_motions(pool, arm, motion, true);
     let mut y = vec![vec![ExprId::ZERO; columns.len()]; arm.dof()];
     let mut links: Vec<Option<LinkColumns>> = vec![None; arm.dof()];
-    let mut payload: Option<LinkColumns> = None;
+    let mut loads: Vec<Option<LinkColumns>> = vec![None; arm.loads.len()];
     for (column, &parameter) in columns.iter().enumerate() {
         match parameter {
             StandardParameter::Link(i, k) => {
@@ -96,10 +96,11 @@ fn columns_in(
                     links[i].get_or_insert_with(|| link_columns(pool, plan, &mut twists, &motions, (i, i), (rotation, origin)));
                 of.iter().for_each(|(row, entries)| y[*row][column] = entries[k.index()]);
             }
-            StandardParameter::Payload(k) => {
-                let tool = (&arm.tool_rotation, &arm.tool_origin);
-                let of =
-                    payload.get_or_insert_with(|| link_columns(pool, plan, &mut twists, &motions, (arm.tip, arm.dof()), tool));
+            StandardParameter::Payload(number, k) => {
+                let number = usize::from(number);
+                let load = &arm.loads[number];
+                let (place, frame) = ((load.link, arm.dof() + number), (&load.rotation, &load.origin));
+                let of = loads[number].get_or_insert_with(|| link_columns(pool, plan, &mut twists, &motions, place, frame));
                 of.iter().for_each(|(row, entries)| y[*row][column] = entries[k.index()]);
             }
             StandardParameter::RotorInertia(i) => {

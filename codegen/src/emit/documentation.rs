@@ -2,7 +2,7 @@
 //! who never saw the generator. Each language writes the [`Block`]s as its comments are written, and its own names for the links.
 
 use crate::catalogue::Parameter;
-use crate::catalogue::{self, Argument, Documentation, Length, Quantity};
+use crate::catalogue::{Argument, Documentation, Length, Quantity};
 use crate::exact::Number;
 use crate::program::listing::decimal;
 use crate::program::{Cost, Function, Module, Operand};
@@ -46,10 +46,10 @@ pub(super) fn linked(text: &str, write: &dyn Fn(Link<'_>) -> String) -> String {
     while let Some((before, (name, after))) =
         rest.split_once('{').and_then(|(before, after)| Some((before, after.split_once('}')?)))
     {
-        let link = if catalogue::named(name).is_some() {
-            Link::Function(name)
-        } else if Argument::ALL.iter().any(|argument| argument.name() == name) {
+        let link = if Argument::ALL.iter().any(|argument| argument.name() == name) {
             Link::Argument(name)
+        } else if name.contains(|c: char| c.is_ascii_lowercase()) {
+            Link::Function(name)
         } else {
             Link::Constant(name)
         };
@@ -235,6 +235,8 @@ pub struct DescribedParameters {
     pub turn: Option<String>,
     /// Whether the acceleration of free fall is an argument.
     pub gravity_is_argument: bool,
+    /// The names of end effectors; none where there is one without a name.
+    pub tips: Vec<String>,
 }
 
 impl DescribedParameters {
@@ -245,6 +247,7 @@ impl DescribedParameters {
             base_parameters: has_base_parameters(module).then(|| named(&module.base_set)),
             turn: turn(module),
             gravity_is_argument: module.gravity_is_argument,
+            tips: module.tips.iter().map(|tip| tip.name.clone()).collect(),
         }
     }
 
@@ -335,13 +338,17 @@ fn cost(cost: &Cost) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::catalogue;
 
     #[test]
     fn every_link_leads_somewhere() {
         const CONSTANTS: [&str; 5] =
             ["PARAMETER_NAMES", "NOMINAL_PARAMETERS", "BASE_PARAMETER_NAMES", "NOMINAL_BASE_PARAMETERS", "TASK"];
         let shown = |link: Link<'_>| match link {
-            Link::Function(name) => format!("<{name}()>"),
+            Link::Function(name) => {
+                assert!(catalogue::named(name).is_some(), "{name} is no function of the module");
+                format!("<{name}()>")
+            }
             Link::Argument(name) => format!("<{name}>"),
             Link::Constant(name) => {
                 assert!(CONSTANTS.contains(&name), "{name} is no constant of the module");

@@ -141,7 +141,7 @@ fn comment(blocks: &[Block], tags: &[String]) -> String {
 }
 
 /// The comments of constants, by their names.
-pub fn constants_comments(described: &DescribedParameters) -> Vec<(&'static str, String)> {
+pub fn constants_comments(described: &DescribedParameters) -> Vec<(String, String)> {
     constants_documentation(described, 0).into_iter().map(|(name, blocks)| (name, comment(&blocks, &[]))).collect()
 }
 

@@ -98,7 +98,7 @@ pub fn contents_comment(robot: &str, functions: &[(String, &Quantity)]) -> Strin
 }
 
 /// The comments of constants, by their names.
-pub fn constants_comments(described: &DescribedParameters) -> Vec<(&'static str, String)> {
+pub fn constants_comments(described: &DescribedParameters) -> Vec<(String, String)> {
     constants_documentation(described, 1).into_iter().map(|(name, blocks)| (name, comment(&blocks, ""))).collect()
 }
 
@@ -133,7 +133,7 @@ fn model(module: &Module, head: &str) -> File {
     let _ = write!(text, "\n{}%#codegen\n    m = struct();\n", origin_of(head));
     let documentation = constants_comments(&DescribedParameters::of(module));
     for (constant, (_, comment)) in constants(module, 1).iter().zip(&documentation) {
-        let _ = writeln!(text, "\n{comment}    m.{} = {};", field(constant.name), value_of(&constant.value));
+        let _ = writeln!(text, "\n{comment}    m.{} = {};", field(&constant.name), value_of(&constant.value));
     }
     text += "end\n";
     File { name: "model.m".into(), text }

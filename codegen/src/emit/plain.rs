@@ -6,7 +6,7 @@ use super::{Language, Notes, Origin};
 use crate::catalogue::{Argument, Parameter, Quantity, ResultPart, Sizes};
 use crate::exact::Number;
 use crate::program::listing::{angles, Angle, Expression, Name};
-use crate::program::{Function, Joint, Module, Operation};
+use crate::program::{EndEffector, Function, Joint, Module, Operation};
 use crate::ring::Symbol;
 
 /// How a language writes the elements of a line.
@@ -189,12 +189,32 @@ pub(super) enum Value {
 
 /// A constant of a module.
 pub(super) struct Constant {
-    pub(super) name: &'static str,
+    pub(super) name: String,
     pub(super) value: Value,
 }
 
-/// The constants of a module in order, with the base parameters last.
-const CONSTANTS: [&str; 18] = [
+/// The constants of a module with these end effectors in order, with the base parameters last.
+fn names(tips: &[String]) -> Vec<String> {
+    let all = CONSTANTS.into_iter().flat_map(|name| match name {
+        TIPS if tips.is_empty() => Vec::new(),
+        TIPS => {
+            let of_tips = tips.iter().flat_map(|tip| OF_TIP.map(|constant| format!("{}_{constant}", tip.to_ascii_uppercase())));
+            [TIPS.to_owned()].into_iter().chain(of_tips).collect()
+        }
+        // Each end effector has its own.
+        "TASK_ROWS" | "TASK" if !tips.is_empty() => Vec::new(),
+        name => vec![name.to_owned()],
+    });
+    all.collect()
+}
+
+/// The names of end effectors, with the constants of each behind them.
+const TIPS: &str = "TIPS";
+/// The constants of a named end effector.
+const OF_TIP: [&str; 3] = ["TASK_ROWS", "TASK", "COORDINATES"];
+
+/// The constants of any module.
+const CONSTANTS: [&str; 19] = [
     "NAME",
     "DOF",
     "JOINT_NAMES",
@@ -206,6 +226,7 @@ const CONSTANTS: [&str; 18] = [
     "JERK_LIMITS",
     "TASK_ROWS",
     "TASK",
+    TIPS,
     "PARAMETERS",
     "PARAMETER_NAMES",
     "NOMINAL_PARAMETERS",
@@ -216,10 +237,25 @@ const CONSTANTS: [&str; 18] = [
 ];
 
 /// The documentation of the constants of a module; `first`: first index of the language.
-pub(super) fn constants_documentation(described: &DescribedParameters, first: usize) -> Vec<(&'static str, Vec<Block>)> {
+pub(super) fn constants_documentation(described: &DescribedParameters, first: usize) -> Vec<(String, Vec<Block>)> {
     let [a, b, c, d, e, f] = std::array::from_fn(|row| row + first);
     let said = |name: &str| {
+        let constant_of = |tip: &String| {
+            let constant = name.strip_prefix(&tip.to_ascii_uppercase())?.strip_prefix('_')?;
+            OF_TIP.contains(&constant).then_some(constant)
+        };
+        let of_tip = described.tips.iter().find_map(|tip| Some((tip, constant_of(tip)?)));
+        if let Some((tip, constant)) = of_tip {
+            return match constant {
+                "TASK_ROWS" => format!("Number of rows of the operational space of `{tip}`."),
+                "TASK" => format!(
+                    "Rows of the geometric Jacobian that make up the operational space of `{tip}`: {a} {b} {c} along x y z, {d} {e} {f} about x y z, in the base frame."
+                ),
+                _ => format!("The joints that move `{tip}`, from the base on, counted from {first}; all other columns of its Jacobian are 0."),
+            };
+        }
         match name {
+        TIPS => "Names of the end effectors.".into(),
         "NAME" => "Name of the robot.".into(),
         "DOF" => "Number of joints.".into(),
         "JOINT_NAMES" => "Names of the joints, base to tip.".into(),
@@ -251,17 +287,17 @@ pub(super) fn constants_documentation(described: &DescribedParameters, first: us
         _ => "Values of the base parameters in the description, the masses of rotors included.".to_string(),
     }
     };
-    let of = |name: &'static str| {
-        let title = Block::text(said(name));
-        let blocks = match name {
+    let of = |name: String| {
+        let title = Block::text(said(&name));
+        let blocks = match name.as_str() {
             "PARAMETER_NAMES" => [title].into_iter().chain(described.meanings()).collect(),
             "BASE_PARAMETER_NAMES" => [title].into_iter().chain(described.base_meanings()).collect(),
             _ => vec![title],
         };
         (name, blocks)
     };
-    let there = |name: &&str| has_constant(name, described.base_parameters.is_some(), described.gravity_is_argument);
-    CONSTANTS.into_iter().filter(there).map(of).collect()
+    let there = |name: &String| has_constant(name, described.base_parameters.is_some(), described.gravity_is_argument);
+    names(&described.tips).into_iter().filter(there).map(of).collect()
 }
 
 /// Whether a module has a constant.
@@ -277,14 +313,20 @@ pub(super) fn constants(module: &Module, first: usize) -> Vec<Constant> {
         None => Value::Infinite(negative),
     };
     let joints = |of: &dyn Fn(&Joint) -> Value| Value::Array(module.joints.iter().map(of).collect());
-    let names = |parameters: &[Parameter]| Value::Array(parameters.iter().map(|parameter| text(&parameter.name)).collect());
+    let named = |parameters: &[Parameter]| Value::Array(parameters.iter().map(|parameter| text(&parameter.name)).collect());
     let nominal = |parameters: &[Parameter]| {
         Value::Array(parameters.iter().map(|parameter| Value::Number(parameter.nominal.clone())).collect())
     };
     let position = |joint: &Joint| Value::Array(vec![number(&joint.position[0], true), number(&joint.position[1], false)]);
-    let of = |name: &'static str| Constant {
-        name,
-        value: match name {
+    let counted = |all: &[usize]| Value::Array(all.iter().map(|&one| Value::Count(one + first)).collect());
+    let of_tip = |name: &str| {
+        let of = |tip: &EndEffector| [Value::Count(tip.task.len()), counted(&tip.task), counted(&tip.coordinates)];
+        let all = module.tips.iter().flat_map(|tip| OF_TIP.map(|constant| tip.constant(constant)).into_iter().zip(of(tip)));
+        all.into_iter().find_map(|(own, value)| (own == name).then_some(value))
+    };
+    let of = |name: String| Constant {
+        value: of_tip(&name).unwrap_or_else(|| match name.as_str() {
+            TIPS => Value::Array(module.tips.iter().map(|tip| text(&tip.name)).collect()),
             "NAME" => text(&module.name),
             "DOF" => Value::Count(module.joints.len()),
             "JOINT_NAMES" => joints(&|joint| text(&joint.name)),
@@ -295,18 +337,20 @@ pub(super) fn constants(module: &Module, first: usize) -> Vec<Constant> {
             "ACCELERATION_LIMITS" => joints(&|joint| number(&joint.acceleration, false)),
             "JERK_LIMITS" => joints(&|joint| number(&joint.jerk, false)),
             "TASK_ROWS" => Value::Count(module.task.len()),
-            "TASK" => Value::Array(module.task.iter().map(|&row| Value::Count(row + first)).collect()),
+            "TASK" => counted(&module.task),
             "PARAMETERS" => Value::Count(module.parameters.len()),
-            "PARAMETER_NAMES" => names(&module.parameters),
+            "PARAMETER_NAMES" => named(&module.parameters),
             "NOMINAL_PARAMETERS" => nominal(&module.parameters),
             "NOMINAL_GRAVITY" => Value::Array(module.gravity.iter().cloned().map(Value::Number).collect()),
             "BASE_PARAMETERS" => Value::Count(module.base_set.len()),
-            "BASE_PARAMETER_NAMES" => names(&module.base_set),
+            "BASE_PARAMETER_NAMES" => named(&module.base_set),
             _ => nominal(&module.base_set),
-        },
+        }),
+        name,
     };
-    let there = |name: &&str| has_constant(name, has_base_parameters(module), module.gravity_is_argument);
-    CONSTANTS.into_iter().filter(there).map(of).collect()
+    let tips: Vec<String> = module.tips.iter().map(|tip| tip.name.clone()).collect();
+    let there = |name: &String| has_constant(name, has_base_parameters(module), module.gravity_is_argument);
+    names(&tips).into_iter().filter(there).map(of).collect()
 }
 
 /// The head of a file as comment lines: its origin, and the functions that the module lacks.

@@ -118,7 +118,7 @@ fn link(link: Link<'_>) -> String {
 }
 
 /// The comments of constants, by their names.
-pub fn constants_comments(described: &DescribedParameters) -> Vec<(&'static str, String)> {
+pub fn constants_comments(described: &DescribedParameters) -> Vec<(String, String)> {
     let line = |line: &String| format!("# {line}").trim_end().to_string() + "\n";
     let comment = |blocks: &[Block]| documentation::plain(blocks, &link).iter().map(line).collect();
     constants_documentation(described, 0).into_iter().map(|(name, blocks)| (name, comment(&blocks))).collect()

@@ -23,7 +23,7 @@ use crate::catalogue::{Absent, Length, Quantity, ResultPart, Sizes};
 use crate::exact::Number;
 use crate::kinds::Scalar;
 use crate::parallel::parallel_map;
-use crate::program::{Function, Joint, Module};
+use crate::program::{EndEffector, Function, Joint, Module};
 pub(super) use inverse_kinematics::{
     about_redundancy, about_target, items as items_of_inverse_kinematics, meanings, what_is_invalid,
 };
@@ -153,7 +153,6 @@ fn constants(module: &Module) -> TokenStream {
     let (name, dof, parameters) = (&module.name, usize_literal(module.joints.len()), usize_literal(module.parameters.len()));
     let joint_names = module.joints.iter().map(|joint| &joint.name);
     let revolute = module.joints.iter().map(|joint| joint.is_revolute);
-    let (rows, task) = (usize_literal(module.task.len()), module.task.iter().map(|&row| usize_literal(row)));
     let number = |value: &Option<Number>, infinite: TokenStream| match value {
         Some(value) => literal(value, module.scalar),
         None => infinite,
@@ -185,7 +184,6 @@ fn constants(module: &Module) -> TokenStream {
             pub const #name: [Real; DOF] = [#(#values),*];
         }
     });
-    let [of_rows, of_task] = ["TASK_ROWS", "TASK"].map(said);
     let [of_parameters, of_names, of_nominal] = ["PARAMETERS", "PARAMETER_NAMES", "NOMINAL_PARAMETERS"].map(said);
     let gravity = module.gravity_is_argument.then(|| {
         let (said, nominal) = (said("NOMINAL_GRAVITY"), module.gravity.iter().map(|component| literal(component, module.scalar)));
@@ -195,6 +193,10 @@ fn constants(module: &Module) -> TokenStream {
             pub const NOMINAL_GRAVITY: [Real; 3] = [#(#nominal),*];
         }
     });
+    let tasks = match module.tips.as_slice() {
+        [] => task_constants("", &module.task, &documented),
+        tips => end_effectors(tips, &documented),
+    };
     let base = base_constants(module, &documented);
     let structures = structures(module, false);
     quote! {
@@ -214,12 +216,7 @@ fn constants(module: &Module) -> TokenStream {
         #[allow(dead_code, clippy::all)]
         pub const POSITION_LIMITS: [[Real; 2]; DOF] = [#(#position),*];
         #(#sizes)*
-        #of_rows
-        #[allow(dead_code)]
-        pub const TASK_ROWS: usize = #rows;
-        #of_task
-        #[allow(dead_code)]
-        pub const TASK: [usize; TASK_ROWS] = [#(#task),*];
+        #tasks
         #of_parameters
         #[allow(dead_code)]
         pub const PARAMETERS: usize = #parameters;
@@ -243,7 +240,7 @@ pub fn function_documentation(described: &Described<'_>) -> Vec<String> {
 
 /// The documentation of constants, by their names.
 #[doc(hidden)]
-pub fn constants_documentation(described: &DescribedParameters) -> Vec<(&'static str, Vec<String>)> {
+pub fn constants_documentation(described: &DescribedParameters) -> Vec<(String, Vec<String>)> {
     super::plain::constants_documentation(described, 0)
         .into_iter()
         .map(|(name, blocks)| (name, documentation::lines(&blocks)))
@@ -251,18 +248,59 @@ pub fn constants_documentation(described: &DescribedParameters) -> Vec<(&'static
 }
 
 /// The documentation of the constants of a module.
-fn documented_constants(module: &Module) -> Vec<(&'static str, Vec<String>)> {
+fn documented_constants(module: &Module) -> Vec<(String, Vec<String>)> {
     constants_documentation(&DescribedParameters::of(module))
 }
 
 /// The documentation of one of them.
-fn documentation_of(all: &[(&'static str, Vec<String>)], constant: &str) -> TokenStream {
+fn documentation_of(all: &[(String, Vec<String>)], constant: &str) -> TokenStream {
     let lines = all.iter().find(|(name, _)| *name == constant).map_or(&[][..], |(_, lines)| lines);
     quote!(#(#[doc = #lines])*)
 }
 
+/// The rows of a task; `tip` is what its names begin with.
+fn task_constants(tip: &str, rows: &[usize], documented: &[(String, Vec<String>)]) -> TokenStream {
+    let [rows_name, task_name] = ["TASK_ROWS", "TASK"].map(|name| format!("{tip}{name}"));
+    let [of_rows, of_task] = [&rows_name, &task_name].map(|name| documentation_of(documented, name));
+    let [rows_name, task_name] = [rows_name, task_name].map(|name| format_ident!("{name}"));
+    let (count, task) = (usize_literal(rows.len()), rows.iter().map(|&row| usize_literal(row)));
+    quote! {
+        #of_rows
+        #[allow(dead_code)]
+        pub const #rows_name: usize = #count;
+        #of_task
+        #[allow(dead_code)]
+        pub const #task_name: [usize; #rows_name] = [#(#task),*];
+    }
+}
+
+/// The constants of named end effectors.
+fn end_effectors(tips: &[EndEffector], documented: &[(String, Vec<String>)]) -> TokenStream {
+    let (of_tips, count, names) =
+        (documentation_of(documented, "TIPS"), usize_literal(tips.len()), tips.iter().map(|tip| &tip.name));
+    let each = tips.iter().map(|tip| {
+        let task = task_constants(&tip.constant(""), &tip.task, documented);
+        let name = tip.constant("COORDINATES");
+        let said = documentation_of(documented, &name);
+        let (name, count) = (format_ident!("{name}"), usize_literal(tip.coordinates.len()));
+        let joints = tip.coordinates.iter().map(|&joint| usize_literal(joint));
+        quote! {
+            #task
+            #said
+            #[allow(dead_code)]
+            pub const #name: [usize; #count] = [#(#joints),*];
+        }
+    });
+    quote! {
+        #of_tips
+        #[allow(dead_code)]
+        pub const TIPS: [&str; #count] = [#(#names),*];
+        #(#each)*
+    }
+}
+
 /// The base parameters, for the function that has them.
-fn base_constants(module: &Module, documented: &[(&'static str, Vec<String>)]) -> Option<TokenStream> {
+fn base_constants(module: &Module, documented: &[(String, Vec<String>)]) -> Option<TokenStream> {
     if !common::has_base_parameters(module) {
         return None;
     }

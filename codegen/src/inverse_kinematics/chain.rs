@@ -118,7 +118,7 @@ fn no_turn() -> [Number; 2] {
 impl Chain {
     /// The joints from the base to the end effector.
     pub(super) fn of(manipulator: &Manipulator) -> Result<Chain, String> {
-        let joint = |id: LinkId| &manipulator.joints[id.0 as usize];
+        let joint = |id: LinkId| &manipulator.joints[id.index()];
         let mut path = vec![manipulator.tip];
         while let Some(parent) = joint(path[path.len() - 1]).parent {
             path.push(parent);

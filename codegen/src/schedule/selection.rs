@@ -3,7 +3,8 @@
 use std::collections::BTreeSet;
 use std::fmt;
 
-use crate::catalogue::{self, Quantity};
+use crate::catalogue::{self, Absent, Quantity};
+use crate::manipulator::Tip;
 use crate::suggest::function_meant;
 
 /// A choice of functions: all of them unless some are named.
@@ -36,10 +37,11 @@ impl Selection {
     /// The functions of the names.
     ///
     /// # Errors
-    /// Names that no emitted function has.
+    /// Names that no emitted function has, whatever the names of end effectors.
     pub fn named<S: AsRef<str>>(names: impl IntoIterator<Item = S>) -> Result<Selection, UnknownFunctions> {
         let names = names.into_iter().map(|name| name.as_ref().to_owned());
-        let (known, unknown): (Vec<String>, Vec<String>) = names.partition(|name| catalogue::named(name).is_some());
+        let (known, unknown): (Vec<String>, Vec<String>) =
+            names.partition(|name| catalogue::named(name).is_some() || catalogue::can_be_of_a_tip(name));
         if unknown.is_empty() {
             Ok(Selection(Some(known.into_iter().collect())))
         } else {
@@ -55,6 +57,24 @@ impl Selection {
     /// The names of the functions, if some are named.
     pub fn names(&self) -> Option<impl Iterator<Item = &str>> {
         Some(self.0.as_ref()?.iter().map(String::as_str))
+    }
+
+    /// Names that no function of a robot with these named end effectors has, with the reason.
+    pub fn unknown_to(&self, tips: &[Tip]) -> Vec<Absent> {
+        let known: Vec<String> = catalogue::functions_of(tips).map(|(quantity, with)| quantity.function_name(with)).collect();
+        let unknown = self.0.iter().flatten().filter(|name| !known.contains(name));
+        let reason = |name: &str| match (tips, catalogue::named(name)) {
+            ([], _) => "the end effector has no name in the description".to_owned(),
+            (_, Some((quantity, _))) => {
+                let names: Vec<String> = tips.iter().map(|tip| tip.prefix() + quantity.name).collect();
+                format!("each end effector has its own, {}", names.join(", "))
+            }
+            (_, None) => {
+                let names: Vec<&str> = tips.iter().map(|tip| tip.name.as_str()).collect();
+                format!("the end effectors are {}", names.join(", "))
+            }
+        };
+        unknown.map(|name| Absent { function: name.clone(), reason: reason(name) }).collect()
     }
 
     /// Whether all functions are wanted, because none is named.

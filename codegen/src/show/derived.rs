@@ -39,6 +39,7 @@ pub(super) fn derived(model: &Model, item: Item, reading: Reading) -> Result<Der
         (_, Reading::Symbolic) => View::Symbolic,
     };
     let (quantity, with) = match item {
+        Item::Determinant if !model.manipulator.tips.is_empty() => return Err(SEVERAL_JACOBIANS.into()),
         Item::Determinant => {
             let of = |pool, entries| Derivation { pool, entries, method: "minors", parallel: Vec::new() };
             return Ok(match determinant(model, view) {
@@ -57,7 +58,7 @@ pub(super) fn derived(model: &Model, item: Item, reading: Reading) -> Result<Der
         Item::Plain(quantity) | Item::Element(quantity, _) => (quantity, false),
         Item::With(quantity) => (quantity, true),
     };
-    (quantity.missing)(model, with).map_or(Ok(()), Err)?;
+    quantity.absence(model, with).map_or(Ok(()), Err)?;
     let plain = matches!(item, Item::Plain(_));
     let of_names = plain && [&REGRESSOR, &KNOWN_TORQUE].contains(&quantity) && reading == Reading::Symbolic;
     let derivation = if of_names { symbolic_regressor(model, quantity) } else { None };
@@ -101,6 +102,9 @@ fn symbolic_regressor(model: &Model, quantity: &Quantity) -> Option<Derivation> 
     };
     Some(Derivation { pool, entries, method: "derivatives by the names", parallel: Vec::new() })
 }
+
+/// Why an arm with named end effectors has no determinant.
+const SEVERAL_JACOBIANS: &str = "each end effector has a Jacobian of its own, which the joints of other branches do not enter";
 
 /// Refers to the page that checks a posture for singularity where no formula does.
 pub const ASK_THE_PAGE: &str =

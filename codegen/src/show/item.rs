@@ -1,6 +1,7 @@
 //! Items that `armgen show` knows by name.
 
 use crate::catalogue::{self, Quantity};
+use crate::manipulator::Tip;
 
 /// An item that `armgen show` knows by name.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -19,9 +20,10 @@ pub enum Item {
 pub(super) const DETERMINANT: &str = "determinant";
 
 impl Item {
-    /// The default selection: the determinant and every function except those that only gather others.
-    pub fn all() -> Vec<Item> {
-        let functions = catalogue::quantities().filter(|quantity| quantity.gathers.is_empty()).map(Item::Plain);
+    /// The default selection of a robot with these named end effectors: the determinant and every function except those that only gather
+    /// others.
+    pub fn all(tips: &[Tip]) -> Vec<Item> {
+        let functions = catalogue::quantities_of(tips).filter(|quantity| quantity.gathers.is_empty()).map(Item::Plain);
         functions.chain([Item::Determinant]).collect()
     }
 
@@ -33,8 +35,8 @@ impl Item {
         }
     }
 
-    /// The items of a name; empty if an arm with `dof` joints has no quantity of this name.
-    pub fn named(name: &str, dof: usize) -> Vec<Item> {
+    /// The items of a name; empty if an arm with `dof` joints and these named end effectors has no quantity of this name.
+    pub fn named(name: &str, dof: usize, tips: &[Tip]) -> Vec<Item> {
         if name == DETERMINANT {
             return vec![Item::Determinant];
         }
@@ -45,14 +47,16 @@ impl Item {
         if let Some(item) = catalogue::quantities().find_map(element) {
             return vec![item];
         }
-        let Some((quantity, with)) = catalogue::named(name) else { return Vec::new() };
+        let named = catalogue::functions_of(tips).find(|(quantity, with)| quantity.function_name(*with) == name);
+        let Some((quantity, with)) = named else { return Vec::new() };
         let parts = if quantity.gathers.is_empty() { &[quantity][..] } else { quantity.gathers };
         parts.iter().map(|&quantity| if with { Item::With(quantity) } else { Item::Plain(quantity) }).collect()
     }
 
     /// Every name that [`Item::named`] knows, except names of single matrices of a list.
-    pub fn names() -> Vec<String> {
-        let forms = [false, true].into_iter().flat_map(|with| catalogue::functions().filter(move |(_, form)| *form == with));
+    pub fn names(tips: &[Tip]) -> Vec<String> {
+        let forms =
+            [false, true].into_iter().flat_map(|with| catalogue::functions_of(tips).filter(move |(_, form)| *form == with));
         forms.map(|(quantity, with)| quantity.function_name(with)).chain([DETERMINANT.to_string()]).collect()
     }
 

@@ -26,9 +26,9 @@ fn sheet(text: &str, names: &[&str], reading: Reading) -> Sheet {
     let (valid, diagnostics) = validate::read(&Source::new("test.yaml", text));
     assert!(!diagnostics.has_errors(), "{:?}", diagnostics.iter().map(|d| &d.message).collect::<Vec<_>>());
     let model = Model::new(valid.expect("valid").0);
-    let items: Vec<Item> = names.iter().flat_map(|name| Item::named(name, model.manipulator.dof())).collect();
+    let items: Vec<Item> = names.iter().flat_map(|name| Item::named(name, model.manipulator.dof(), &[])).collect();
     assert!(names.is_empty() || !items.is_empty());
-    Sheet::new(&model, if names.is_empty() { Item::all() } else { items }.as_slice(), reading)
+    Sheet::new(&model, if names.is_empty() { Item::all(&[]) } else { items }.as_slice(), reading)
 }
 
 #[track_caller]
@@ -179,13 +179,13 @@ joints:
 
 fn in_style(text: &str, name: &str, style: Style) -> Shown {
     let model = Model::new(validate::read(&Source::new("test.yaml", text)).0.expect("valid").0);
-    Sheet::in_style(&model, &Item::named(name, model.manipulator.dof()), Reading::Nominal, style).quantities.remove(0)
+    Sheet::in_style(&model, &Item::named(name, model.manipulator.dof(), &[]), Reading::Nominal, style).quantities.remove(0)
 }
 
 #[test]
 fn the_shortest_form_is_no_longer_than_the_others() {
     let mut kinds = BTreeSet::new();
-    for item in Item::all().into_iter().filter(|item| item.said_missing()) {
+    for item in Item::all(&[]).into_iter().filter(|item| item.said_missing()) {
         let name = item.name();
         let of = |form| in_style(TWO_LINKS, &name, Style { form, digits: None });
         let (shortest, closed, steps) = (of(Form::Shortest), of(Form::Closed), of(Form::Steps));

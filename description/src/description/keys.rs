@@ -52,6 +52,8 @@ pub(super) enum Shape {
     Units,
     /// A list of joints, whose keys depend on the convention.
     Joints,
+    /// A list of end effectors.
+    Tips,
     /// A list of distinct rows of the task.
     Task,
     /// A word of [`REGRESSORS`], or a list of distinct names.
@@ -138,6 +140,7 @@ pub(super) const ROBOT: &[Entry] = &[
     optional("task", Shape::Task, "Rows of the operational space in your order, in the base frame: x y z linear, rx ry rz angular; all six if left out."),
     optional("regressor", Shape::Regressor, "Columns of the regressor. standard: ten parameters a link, and those of drives. base: the smallest set. Or names of parameters."),
     optional("inverse_kinematics", Shape::Mapping("inverse_kinematics", INVERSE_KINEMATICS), "The target of inverse kinematics, and the joint whose value the caller gives."),
+    optional("tips", Shape::Tips, "End effectors, each with a name, in place of tip, tool, payload, task and inverse_kinematics here."),
     optional("allow", Shape::Warnings, "Kinds of warnings that this file accepts."),
 ];
 
@@ -209,6 +212,23 @@ pub(super) const URDF_JOINT: &[Entry] = &[
     FRICTION_OF_JOINT,
     SPRING_OF_JOINT,
     ARMATURE,
+];
+/// The keys of an end effector.
+pub(super) const TIP: &[Entry] = &[
+    required("name", "name: left", Shape::Name, "Name of the end effector, with which the names of its functions begin."),
+    required("joint", "joint: left_7", Shape::Name, "The joint whose link carries the end effector."),
+    optional("tool", Shape::Pose, "The frame of the end effector, in the frame of the link that carries it."),
+    optional("payload", Shape::Mapping("payload", PAYLOAD), "A load in the frame of the end effector."),
+    optional(
+        "task",
+        Shape::Task,
+        "Rows of the operational space in your order, in the base frame: x y z linear, rx ry rz angular; all six if left out.",
+    ),
+    optional(
+        "inverse_kinematics",
+        Shape::Mapping("inverse_kinematics", INVERSE_KINEMATICS),
+        "The target of inverse kinematics, and the joint whose value the caller gives.",
+    ),
 ];
 pub(super) const INVERSE_KINEMATICS: &[Entry] = &[
     optional("target", Shape::Word(TARGET_WORDS), "The target; the rows of task if left out."),

@@ -2,20 +2,21 @@
 
 use super::keys::{
     Entry, ATTACHED, CONVENTIONS, FRICTION, GRAVITY, INERTIA, INVERSE_KINEMATICS, JOINT, JOINT_KINDS, LIMITS, LINK, MOST_POSES,
-    MOTOR, PAYLOAD, POSE, PRODUCTS, REGRESSORS, ROBOT, ROTATIONS, SPRING, STRIBECK, TARGETS, URDF_JOINT,
+    MOTOR, PAYLOAD, POSE, PRODUCTS, REGRESSORS, ROBOT, ROTATIONS, SPRING, STRIBECK, TARGETS, TIP, URDF_JOINT,
 };
 use super::other_formats::{OTHER_NAMES, OTHER_PLACES};
 use super::units::{UnitKey, KEYS};
 use super::{
     AttachedDescription, BodyDescription, Convention, FrictionDescription, InertiaDescription, JointDescription,
     LimitsDescription, MotorDescription, NamedUnit, ParameterDescription, PoseDescription, PoseElement, PosturesDescription,
-    RegressorDescription, RobotDescription, RotationDescription, SpringDescription, StribeckDescription, Value, INERTIA_ELEMENTS,
+    RegressorDescription, RobotDescription, RotationDescription, SpringDescription, StribeckDescription, TipDescription, Value,
+    INERTIA_ELEMENTS,
 };
 use crate::diagnostic::{Code, Diagnostics};
 use crate::document::reader::{first_key, optional, Fields, Reader};
 use crate::document::yaml::{Kind, Node};
 use crate::document::{excerpt, Expression, Unit};
-use crate::kinds::TaskRow;
+use crate::kinds::{TaskRow, MAX_TIPS};
 use crate::source::{Source, Span, Spanned};
 
 /// The description that the tree holds.
@@ -61,6 +62,7 @@ impl Reader<'_> {
                 .get("inverse_kinematics")
                 .and_then(|(key, node)| self.inverse_kinematics(node, key))
                 .unwrap_or_default(),
+            tips: fields.get("tips").and_then(|(key, node)| self.tips(node, key, &fields)),
             allow: fields.get("allow").map_or_else(Vec::new, |(key, node)| self.allow(node, key)),
         }
     }
@@ -317,6 +319,49 @@ impl Reader<'_> {
             fields.get("target").and_then(|(key, node)| self.choice(node, key, "target", &TARGETS, Code::UnknownTarget, help));
         let given = fields.get("given").and_then(|(key, node)| self.word(node, key, "given"));
         Some(PosturesDescription { target, given })
+    }
+
+    /// End effectors with names. The keys of a single end effector are in each of them, and not beside them.
+    fn tips(&mut self, node: &Node, key: Span, beside: &Fields<'_>) -> Option<Spanned<Vec<TipDescription>>> {
+        for name in ["tip", "tool", "payload", "task", "inverse_kinematics"] {
+            if beside.has(name) {
+                let message = format!("`{name}` stands beside `tips`");
+                let help = match name {
+                    "tip" => "give each end effector its `joint`, and leave `tip` out".to_owned(),
+                    _ => format!("move `{name}` into the end effector that it is of"),
+                };
+                self.report(Code::TipsBesideTool, beside.place(name), message, "of which end effector?", help);
+            }
+        }
+        let items = self.list(node, key, "tips", "a list", "write one `- {name: ..., joint: ...}` per end effector")?;
+        if items.is_empty() {
+            let help = "name an end effector, `- {name: hand, joint: ...}`, or leave the key out";
+            self.report(Code::EmptyList, node.span, "`tips` names no end effector", "empty", help);
+            return None;
+        }
+        if let Some(item) = items.get(MAX_TIPS) {
+            let message = format!("{} end effectors are more than the {MAX_TIPS} of a robot", items.len());
+            let help = "leave out those whose frames no program asks for: `link_frames` has a frame of each link";
+            self.report(Code::TooManyTips, item.span, message, format!("end effector {}", MAX_TIPS + 1), help);
+            return None;
+        }
+        let tips: Vec<TipDescription> = items.iter().filter_map(|item| self.tip(item)).collect();
+        (!tips.is_empty()).then(|| Spanned::new(tips, key))
+    }
+
+    fn tip(&mut self, node: &Node) -> Option<TipDescription> {
+        let fields = self.mapping(node, "an end effector", first_key(node), TIP)?;
+        Some(TipDescription {
+            name: fields.get("name").and_then(|(key, node)| self.word(node, key, "name")),
+            joint: fields.get("joint").and_then(|(key, node)| self.word(node, key, "joint")),
+            tool: fields.get("tool").and_then(|(key, node)| self.pose(node, key, "tool")),
+            payload: fields.get("payload").and_then(|(key, node)| self.body(node, key, "`payload`", PAYLOAD)),
+            task: fields.get("task").and_then(|(key, node)| self.task(node, key)),
+            inverse_kinematics: fields
+                .get("inverse_kinematics")
+                .and_then(|(key, node)| self.inverse_kinematics(node, key))
+                .unwrap_or_default(),
+        })
     }
 
     fn allow(&mut self, node: &Node, key: Span) -> Vec<Spanned<String>> {

@@ -7,13 +7,13 @@ use std::borrow::Borrow;
 
 use serde_json::{json, Map, Value};
 
-use super::keys::{Entry, Shape, CONVENTIONS, GRAVITY, JOINT, MOST_POSES, POSE, REGRESSORS, ROBOT, ROTATIONS, URDF_JOINT};
+use super::keys::{Entry, Shape, CONVENTIONS, GRAVITY, JOINT, MOST_POSES, POSE, REGRESSORS, ROBOT, ROTATIONS, TIP, URDF_JOINT};
 use super::units::KEYS;
 use super::Convention;
 use crate::diagnostic::{Code, Severity};
 use crate::document::reader::Key;
 use crate::document::MAX_EXPRESSION;
-use crate::kinds::{TaskRow, MAX_JOINTS};
+use crate::kinds::{TaskRow, MAX_JOINTS, MAX_TIPS};
 
 /// The characters of ASCII that no identifier begins with.
 const NO_START: &str = r"\u0000-@\[-\^`{-\u007f";
@@ -59,7 +59,11 @@ pub fn schema() -> Value {
         ] }),
     );
     definitions.insert("name".into(), json!({ "type": "string", "pattern": format!("^[^{NO_START}][^{NO_PART}]*$") }));
+    // A named end effector has the keys of the single one.
+    let of_tip = ["tip", "tool", "payload", "task", "inverse_kinematics"];
+    let beside = of_tip.map(|key| json!({ "required": ["tips", key] }));
     let about = [
+        ("not", json!({ "anyOf": beside })),
         ("$schema", json!("http://json-schema.org/draft-07/schema#")),
         ("title", json!("robot.yaml of armgen")),
         ("description", json!("A robot arm: joints, links, drives.")),
@@ -147,6 +151,7 @@ fn property(entry: &Entry, definitions: &mut Map<String, Value>) -> Value {
             json!({ "type": "object", "additionalProperties": false, "properties": keys })
         }
         Shape::Joints => json!({ "type": "array", "minItems": 1, "maxItems": MAX_JOINTS, "items": { "type": "object" } }),
+        Shape::Tips => json!({ "type": "array", "minItems": 1, "maxItems": MAX_TIPS, "items": define("tip", TIP) }),
         Shape::Task => {
             let rows = TaskRow::ALL.map(TaskRow::name);
             json!({ "type": "array", "minItems": 1, "uniqueItems": true, "items": { "enum": rows } })

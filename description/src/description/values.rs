@@ -237,6 +237,14 @@ macro_rules! walk {
             if let Some(payload) = & $($mutable)? description.payload {
                 $body(to, payload);
             }
+            if let Some(tips) = & $($mutable)? description.tips {
+                for tip in & $($mutable)? tips.value {
+                    $pose(to, & $($mutable)? tip.tool);
+                    if let Some(payload) = & $($mutable)? tip.payload {
+                        $body(to, payload);
+                    }
+                }
+            }
         }
 
         impl RobotDescription {

@@ -1,23 +1,23 @@
-//! Task, regressor and inverse kinematics: rows and names, each at most once, each known.
+//! End effectors, task, regressor and inverse kinematics: rows and names, each at most once, each known.
 
 use super::number::text_of;
 use super::places::Role;
-use super::{Context, FirstSeen};
-use crate::description::{RegressorDescription, RobotDescription};
+use super::{bodies, geometry, Context, FirstSeen};
+use crate::description::{JointDescription, PosturesDescription, RegressorDescription, RobotDescription};
 use crate::diagnostic::{Code, Diagnostic, Diagnostics};
 use crate::document::excerpt;
 use crate::exact::Polynomial;
 use crate::kinds::TaskRow;
-use crate::manipulator::{GivenBeside, LinkId, Postures, RegressorChoice};
-use crate::source::Span;
+use crate::manipulator::{GivenBeside, LinkId, Pose, Postures, RegressorChoice, Tip};
+use crate::source::{Span, Spanned};
 use crate::suggest::did_you_mean;
 
 /// After so many unknown names no more is guessed about what was meant: each guess compares the name with all that are defined.
 const GUESSES: usize = 50;
 
 /// The rows, all six where the file names none.
-pub(super) fn task(description: &RobotDescription, diagnostics: &mut Diagnostics) -> Vec<TaskRow> {
-    let Some(task) = &description.task else { return TaskRow::ALL.to_vec() };
+pub(super) fn task(task: Option<&Spanned<Vec<Spanned<TaskRow>>>>, diagnostics: &mut Diagnostics) -> Vec<TaskRow> {
+    let Some(task) = task else { return TaskRow::ALL.to_vec() };
     let mut seen = FirstSeen::new();
     let mut rows = Vec::new();
     for row in &task.value {
@@ -41,31 +41,75 @@ pub(super) fn tip(description: &RobotDescription, diagnostics: &mut Diagnostics)
     let joints = &description.joints.as_ref()?.value;
     let link = |place: usize| u32::try_from(place).ok().map(LinkId);
     let Some(tip) = &description.tip else { return link(joints.len().checked_sub(1)?) };
+    let otherwise = "name the joint whose link carries the end effector, or leave the key out for the last one";
+    carrier(joints, tip, "tip", otherwise, diagnostics)
+}
+
+/// The link of the joint that `key` names; `otherwise` is the remedy where no name is near.
+fn carrier(
+    joints: &[JointDescription],
+    named: &Spanned<String>,
+    key: &str,
+    otherwise: &str,
+    diagnostics: &mut Diagnostics,
+) -> Option<LinkId> {
     let names: Vec<&str> = joints.iter().filter_map(|joint| joint.name.as_ref()).map(|name| name.value.as_str()).collect();
-    let place = joints.iter().position(|joint| joint.name.as_ref().is_some_and(|name| name.value == tip.value));
+    let place = joints.iter().position(|joint| joint.name.as_ref().is_some_and(|name| name.value == named.value));
     if place.is_none() {
-        let message = format!("`tip` names `{}`, which is no joint", excerpt(&tip.value));
-        let help = match did_you_mean(&tip.value, &names) {
-            Some(meant) => format!("did you mean `{meant}`?"),
-            None => "name the joint whose link carries the end effector, or leave the key out for the last one".into(),
-        };
-        diagnostics.push(Diagnostic::new(Code::UnknownTipJoint, tip.span, message, "unknown joint", help));
+        let message = format!("`{key}` names `{}`, which is no joint", excerpt(&named.value));
+        let help = did_you_mean(&named.value, &names).map_or(otherwise.into(), |meant| format!("did you mean `{meant}`?"));
+        diagnostics.push(Diagnostic::new(Code::UnknownTipJoint, named.span, message, "unknown joint", help));
     }
-    link(place?)
+    u32::try_from(place?).ok().map(LinkId)
+}
+
+/// The end effectors with names; none where the file has none. Faults are reported.
+pub(super) fn tips(description: &RobotDescription, context: &mut Context<'_>) -> Option<Vec<Tip>> {
+    let described = description.tips.as_ref().map_or(&[][..], |tips| &tips.value);
+    let mut tips = Some(Vec::new());
+    for tip in described {
+        let name = tip.name.as_ref();
+        let called = name.map_or(String::new(), |name| format!(" of end effector `{}`", excerpt(&name.value)));
+        let joints = description.joints.as_ref().map_or(&[][..], |joints| &joints.value);
+        let otherwise = "name the joint whose link carries the end effector";
+        let joint = tip.joint.as_ref().and_then(|joint| carrier(joints, joint, "joint", otherwise, context.diagnostics));
+        let tool = geometry::pose(tip.tool.as_ref(), &format!("the tool{called}"), context);
+        let load = |body| bodies::part(body, Some(Pose::identity()), &format!("the payload{called}"), context);
+        let payload = tip.payload.as_ref().map(load);
+        let task = task(tip.task.as_ref(), context.diagnostics);
+        let inverse_kinematics = inverse_kinematics(&tip.inverse_kinematics, joints, context.diagnostics);
+        let read = || {
+            let payload = match payload {
+                Some(body) => Some(body?),
+                None => None,
+            };
+            Some(Tip { name: name?.value.clone(), joint: joint?, tool: tool?, payload, task, inverse_kinematics })
+        };
+        tips = tips.zip(read()).map(|(mut all, tip)| {
+            all.push(tip);
+            all
+        });
+    }
+    tips
 }
 
 /// The word for the swivel angle.
 const SWIVEL: &str = "swivel";
 
 /// The choices for inverse kinematics.
-pub(super) fn inverse_kinematics(description: &RobotDescription, diagnostics: &mut Diagnostics) -> Postures {
-    let asked = &description.inverse_kinematics;
+pub(super) fn inverse_kinematics(
+    asked: &PosturesDescription,
+    joints: &[JointDescription],
+    diagnostics: &mut Diagnostics,
+) -> Postures {
     let mut postures = Postures { target: asked.target.as_ref().map(|target| target.value), given: None };
     let Some(given) = &asked.given else { return postures };
     // Faults of the joints are already reported.
-    let Some(joints) = &description.joints else { return postures };
-    let names: Vec<&str> = joints.value.iter().filter_map(|joint| joint.name.as_ref()).map(|name| name.value.as_str()).collect();
-    let place = joints.value.iter().position(|joint| joint.name.as_ref().is_some_and(|name| name.value == given.value));
+    if joints.is_empty() {
+        return postures;
+    }
+    let names: Vec<&str> = joints.iter().filter_map(|joint| joint.name.as_ref()).map(|name| name.value.as_str()).collect();
+    let place = joints.iter().position(|joint| joint.name.as_ref().is_some_and(|name| name.value == given.value));
     postures.given = place.and_then(|place| u32::try_from(place).ok()).map(|place| GivenBeside::Joint(LinkId(place)));
     // A joint of that name comes first.
     if postures.given.is_none() && given.value == SWIVEL {

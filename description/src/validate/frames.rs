@@ -21,24 +21,28 @@ use std::cmp::Ordering;
 use super::geometry::{cross, dot};
 use crate::exact::{Number, Polynomial};
 use crate::kinds::JointKind;
-use crate::manipulator::{Joint, LinkId, Parameter, Placement, Pose};
+use crate::manipulator::{Joint, Parameter, Placement, Pose};
 
 /// Terms of a number of a joint frame.
 const MAX_TERMS: usize = 16;
 
-/// Moves each placement into the joint frame of its parent. `anywhere`: rows say nothing of joint frames, which are laid first.
-pub(super) fn lay(joints: &mut [Joint], tip: LinkId, tool: &Pose, anywhere: bool, parameters: &[Parameter]) {
+/// Moves each placement into the joint frame of its parent. `ends`: links of end effectors, with their tools. `anywhere`: rows say nothing of joint frames, which are laid first.
+pub(super) fn lay(joints: &mut [Joint], ends: &[(usize, &Pose)], anywhere: bool, parameters: &[Parameter]) {
     let mut frames: Vec<Placement> = Vec::new();
-    let reach =
-        2.0 * joints.iter().map(|joint| &joint.row.before.frame).chain([&tool.frame]).map(|f| size(f, parameters)).sum::<f64>();
-    let index = |link: LinkId| link.0 as usize;
+    let reach = 2.0
+        * joints
+            .iter()
+            .map(|joint| &joint.row.before.frame)
+            .chain(ends.iter().map(|(_, tool)| &tool.frame))
+            .map(|f| size(f, parameters))
+            .sum::<f64>();
     let bare = Pose::identity();
     for i in 0..joints.len() {
         let frame = match anywhere {
             true => {
-                let before = joints[i].parent.map(|parent| &frames[index(parent)]);
-                let next = joints[i + 1..].iter().find(|joint| joint.parent.is_some_and(|parent| index(parent) == i));
-                let end = if i == index(tip) { tool } else { &bare };
+                let before = joints[i].parent.map(|parent| &frames[parent.index()]);
+                let next = joints[i + 1..].iter().find(|joint| joint.parent.is_some_and(|parent| parent.index() == i));
+                let end = ends.iter().find(|(link, _)| *link == i).map_or(&bare, |(_, tool)| tool);
                 frame(&joints[i], before, next, end, reach, parameters)
             }
             false => Placement::identity(),
@@ -49,7 +53,7 @@ pub(super) fn lay(joints: &mut [Joint], tip: LinkId, tool: &Pose, anywhere: bool
         let row = &joints[i].row;
         let after = row.after.frame.clone();
         let placement = match joints[i].parent {
-            Some(parent) => joints[index(parent)].link_frame.then(&row.before.frame),
+            Some(parent) => joints[parent.index()].link_frame.then(&row.before.frame),
             None => row.before.frame.clone(),
         };
         if anywhere {

@@ -2,10 +2,10 @@
 
 use super::parents::BASE;
 use super::FirstSeen;
-use crate::description::RobotDescription;
+use crate::description::{RobotDescription, TipDescription};
 use crate::diagnostic::{Code, Diagnostic, Diagnostics};
 use crate::document::excerpt;
-use crate::source::{is_hidden, Spanned};
+use crate::source::{is_hidden, Span, Spanned};
 
 /// Words of Rust, editions 2015 to 2024, that cannot be the name of anything there.
 const KEYWORDS: [&str; 53] = [
@@ -24,6 +24,15 @@ const VARIABLES: [&str; 6] = ["q", "dq", "ddq", "dqr", "ddqr", "tau"];
 /// Coordinates of the acceleration of free fall in printed equations, where that is an argument.
 const FREE_FALL: [&str; 3] = ["g0x", "g0y", "g0z"];
 
+/// Characters of the name of an end effector at most: MATLAB has names of 63.
+const LONGEST_TIP: usize = 32;
+
+/// Types of the module, in lower case.
+const TAKEN: [&str; 2] = ["real", "equationsofmotion"];
+
+/// What names of functions for many states begin with, in C and CUDA.
+const BEGINNINGS: [&str; 3] = ["batch", "kernel", "launch"];
+
 /// Checks every name that the file gives.
 pub(super) fn check(description: &RobotDescription, diagnostics: &mut Diagnostics) {
     // The robot's name stands in the emitted text as a text and as the beginning of names: no word is reserved for it.
@@ -40,6 +49,7 @@ pub(super) fn check(description: &RobotDescription, diagnostics: &mut Diagnostic
             diagnostics.push(Diagnostic::new(Code::ReservedName, parameter.name.span, message, "reserved", help));
         }
     }
+    check_tips(description.tips.as_ref().map_or(&[][..], |tips| &tips.value), diagnostics);
     let joints = || description.joints.iter().flat_map(|joints| &joints.value);
     let on_base = joints().filter_map(|joint| joint.parent.as_ref()).find(|parent| parent.value == BASE);
     let mut seen = FirstSeen::new();
@@ -60,6 +70,49 @@ pub(super) fn check(description: &RobotDescription, diagnostics: &mut Diagnostic
         } else {
             seen.insert(&name.value, name.span);
         }
+    }
+}
+
+/// Names of functions, constants and types of an end effector begin with its name: those of two must differ, whatever the style.
+fn check_tips(tips: &[TipDescription], diagnostics: &mut Diagnostics) {
+    let plain = |name: &str| name.to_lowercase().replace('_', "");
+    let mut seen: Vec<(&str, Span)> = Vec::new();
+    for name in tips.iter().filter_map(|tip| tip.name.as_ref()) {
+        let (own, shown) = (name.value.as_str(), excerpt(&name.value));
+        check_identifier(name, "an end effector", diagnostics);
+        if !own.starts_with(|c: char| c.is_ascii_alphabetic()) || !own.is_ascii() || own.len() > LONGEST_TIP {
+            let message = format!("`{shown}` cannot be the name of an end effector: not every language can begin a name with it");
+            let help = format!("use a letter, then letters, digits and `_` of ASCII, at most {LONGEST_TIP}: `left`");
+            if is_rust_name(own) {
+                diagnostics.push(Diagnostic::new(Code::BadName, name.span, message, "not in every language", help));
+            }
+            continue;
+        }
+        let begins = BEGINNINGS.iter().any(|word| own.to_lowercase().starts_with(word));
+        if begins || TAKEN.contains(&plain(own).as_str()) {
+            let message = format!(
+                "`{shown}` cannot be the name of an end effector: names that it makes are those of other parts of the module"
+            );
+            let help = match begins {
+                true => "choose a name that begins with another word, such as `left`".to_owned(),
+                false => format!("choose another name, such as `{own}_tip`"),
+            };
+            diagnostics.push(Diagnostic::new(Code::NameTaken, name.span, message, "taken", help));
+        }
+        // Types of a robot in the interface of the runtime end so.
+        let all = |name: &str| ["", "withparameters", "mounted"].map(|end| plain(name) + end);
+        let clash = seen.iter().find(|(other, _)| all(other).iter().any(|one| all(own).contains(one)));
+        if let Some((other, first)) = clash {
+            let (code, message) = match *other == own {
+                true => (Code::DuplicateTip, format!("two end effectors are called `{shown}`")),
+                false => {
+                    (Code::NameTaken, format!("names of `{shown}` and of `{}` in the module would be the same", excerpt(other)))
+                }
+            };
+            let help = "give each end effector a name of its own; upper case and `_` do not tell names apart";
+            diagnostics.push(Diagnostic::new(code, name.span, message, "the second one", help).also(*first, "the first one"));
+        }
+        seen.push((own, name.span));
     }
 }
 

@@ -2,7 +2,8 @@
 
 pub use crate::description::Role;
 use crate::description::{RegressorDescription, RobotDescription};
-use crate::source::Span;
+use crate::kinds::TaskRow;
+use crate::source::{Span, Spanned};
 
 /// Places of an arm's parts, in the order of the [`Manipulator`](crate::manipulator::Manipulator).
 #[derive(Clone, Debug, Default)]
@@ -13,10 +14,8 @@ pub struct Places {
     pub gravity: Span,
     /// Per joint.
     pub joints: Vec<JointPlaces>,
-    /// The key `task`, if the file has it.
-    pub task: Option<Span>,
-    /// Its rows.
-    pub task_rows: Vec<Span>,
+    /// Per end effector the rows of `task`, or the key where it has none; `None` if the file has no such key.
+    pub tasks: Vec<Option<Span>>,
     /// The key `regressor`, if the file has it.
     pub regressor: Option<Span>,
     /// The names that it lists, in its order.
@@ -49,6 +48,11 @@ pub struct Occurrence {
     pub role: Role,
 }
 
+/// The rows of a task, or its key.
+fn task(task: Option<&Spanned<Vec<Spanned<TaskRow>>>>) -> Option<Span> {
+    task.map(|task| task.value.iter().map(|row| row.span).reduce(Span::to).unwrap_or(task.span))
+}
+
 /// The places of a valid description, whose names that stay symbols stand and are used at `symbols`.
 pub(super) fn gather(description: &RobotDescription, symbols: Vec<(Span, Vec<Occurrence>)>) -> Places {
     let joints = description.joints.iter().flat_map(|joints| &joints.value);
@@ -67,8 +71,10 @@ pub(super) fn gather(description: &RobotDescription, symbols: Vec<(Span, Vec<Occ
                 }
             })
             .collect(),
-        task: description.task.as_ref().map(|t| t.span),
-        task_rows: description.task.iter().flat_map(|t| &t.value).map(|row| row.span).collect(),
+        tasks: match &description.tips {
+            Some(tips) => tips.value.iter().map(|tip| task(tip.task.as_ref())).collect(),
+            None => vec![task(description.task.as_ref())],
+        },
         regressor: description.regressor.as_ref().map(|r| r.span),
         regressor_names: match description.regressor.as_ref().map(|r| &r.value) {
             Some(RegressorDescription::Names(names)) => names.iter().map(|n| n.span).collect(),

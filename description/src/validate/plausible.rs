@@ -37,10 +37,9 @@ mod slips;
 
 use super::{call, Context};
 use crate::description::{BodyDescription, JointDescription, PoseDescription, RobotDescription, RotationDescription, Value};
-use crate::diagnostic::Code;
+use crate::diagnostic::{Code, Diagnostic};
 use crate::document::Expression;
 use crate::kinds::JointKind;
-use crate::manipulator::LinkId;
 use crate::source::Span;
 pub use densities::{density_of_cuboid, doubt_of_density};
 use drives::{check_effort, check_friction, check_velocity};
@@ -99,8 +98,15 @@ struct Body<'b> {
 }
 
 /// Warns of what is implausible in a description without errors.
-pub(super) fn check(description: &RobotDescription, parents: &[Option<usize>], tip: LinkId, context: &mut Context<'_>) {
+/// `ends`: the link of each end effector, and its tool.
+pub(super) fn check(
+    description: &RobotDescription,
+    parents: &[Option<usize>],
+    ends: &[(usize, Option<&PoseDescription>)],
+    context: &mut Context<'_>,
+) {
     let Some(joints) = description.joints.as_ref().map(|list| list.value.as_slice()) else { return };
+    check_branches(description, joints, parents, context);
     gravity(description, context);
     let mut lengths = Vec::new();
     for (i, joint) in joints.iter().enumerate() {
@@ -120,14 +126,16 @@ pub(super) fn check(description: &RobotDescription, parents: &[Option<usize>], t
         translation(base, "the base", context);
     }
     check_outlying_length(joints, context);
-    let tool = description.tool.as_ref().map(|tool| (translation(tool, "the tool", context), tool.key));
-    // How far each joint is from the base at most, the tip with its tool.
+    let tools = ends.iter().map(|(link, tool)| (*link, tool.map(|tool| (translation(tool, "the tool", context), tool.key))));
+    let tools: Vec<_> = tools.filter_map(|(link, tool)| Some((link, tool?))).collect();
+    // How far each joint is from the base at most, those of end effectors with the tool.
     let mut far: Vec<f64> = Vec::new();
     for (length, parent) in lengths.iter().zip(parents) {
         far.push(parent.map_or(0.0, |parent| far[parent]) + length);
     }
-    far[tip.0 as usize] += tool.map_or(0.0, |(length, _)| length);
-    let mut reach = far.into_iter().fold(0.0, f64::max);
+    let ends = tools.iter().map(|(link, (length, _))| far[*link] + length);
+    let mut reach = far.iter().copied().chain(ends).fold(0.0, f64::max);
+    let tool = tools.into_iter().map(|(_, tool)| tool).max_by(|a, b| a.0.total_cmp(&b.0));
     check_reach(joints, &lengths, tool, reach, context);
     let strokes: Vec<f64> = joints.iter().map(|joint| stroke(joint, context)).collect();
     if reach < 2.0 * SMALL_REACH {
@@ -155,7 +163,8 @@ pub(super) fn check(description: &RobotDescription, parents: &[Option<usize>], t
         }
     }
     arm.check_rates(context);
-    if let Some(payload) = &description.payload {
+    let loads = description.tips.iter().flat_map(|tips| &tips.value).filter_map(|tip| tip.payload.as_ref());
+    for payload in description.payload.iter().chain(loads) {
         let weightless = !description.gravity_is_argument
             && description.gravity.as_ref().is_some_and(|g| g.value.iter().all(|g| number(g, context) == 0.0));
         arm.check_payload(payload, doubted, weightless, context);
@@ -163,6 +172,25 @@ pub(super) fn check(description: &RobotDescription, parents: &[Option<usize>], t
     if !doubtful {
         arm.check_densities(context);
     }
+}
+
+/// An arm with branches whose file does not name its end effector.
+fn check_branches(
+    description: &RobotDescription,
+    joints: &[JointDescription],
+    parents: &[Option<usize>],
+    context: &mut Context<'_>,
+) {
+    let mut leaves = (0..joints.len()).filter(|i| !parents.contains(&Some(*i)));
+    let (Some(leaf), Some(last), None, None) = (leaves.next(), leaves.next_back(), &description.tip, &description.tips) else {
+        return;
+    };
+    let place = |i: usize| joints[i].name.as_ref().map_or(joints[i].span, |name| name.span);
+    let [first, last] = [leaf, last].map(|i| (place(i), call(i, &joints[i])));
+    let message = format!("the arm has several branches, and one end effector, on joint {}, the last of the list", last.1);
+    let help = "name its joint by `tip`, or several end effectors by `tips: [{name: ..., joint: ...}, ...]`";
+    let doubt = Diagnostic::new(Code::OneTip, last.0, message, "has the end effector", help);
+    context.diagnostics.push(doubt.also(first.0, format!("joint {} ends a branch, too", first.1)));
 }
 
 /// The length of a pose's translations, m; warns of tiny angles and lengths.

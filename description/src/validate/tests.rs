@@ -105,7 +105,7 @@ fn what_is_not_given_has_the_value_of_the_format() {
     assert_eq!(arm.regressor, RegressorChoice::Standard);
     assert_eq!(arm.tool.frame, Placement::identity());
     assert!(arm.payload.is_none() && arm.parameters.is_empty());
-    assert_eq!((places.task, places.regressor), (None, None));
+    assert_eq!((places.tasks, places.regressor), (vec![None], None));
     let joint = &arm.joints[0];
     assert!(joint.viscous.is_none() && joint.coulomb.is_none() && joint.limits.position.is_none());
     assert!(joint.link[0].body.com.iter().chain(&joint.link[0].body.inertia).all(Polynomial::is_zero));

@@ -3,6 +3,7 @@
 use std::collections::BTreeMap;
 
 use armgen_codegen::diagnostic::{Diagnostic, Diagnostics};
+use armgen_codegen::kinds::MAX_TIPS;
 
 use super::locks::Locks;
 use super::names;
@@ -22,11 +23,8 @@ struct Candidate {
     joints: usize,
 }
 
-/// The only leaf with a moving joint above it, with notes; where several differ by fixed joints alone, the link of the last joint that moves.
-///
-/// A site whose name is that of a tool's frame counts as a leaf: it is to a MuJoCo model what a link without mass is to a URDF.
-pub(super) fn only(tree: &Tree, base: usize, locks: &Locks, diagnostics: &mut Diagnostics) -> Option<(usize, Vec<String>)> {
-    // Leaves by the last joint above them that moves, in the order of the file.
+/// Leaves by the last joint above them that moves, in the order of the file.
+fn leaves(tree: &Tree, base: usize, locks: &Locks) -> BTreeMap<usize, Vec<Candidate>> {
     let mut groups: BTreeMap<usize, Vec<Candidate>> = BTreeMap::new();
     let mut frames: Vec<Candidate> = Vec::new();
     let mut open: Vec<(usize, Option<usize>, usize)> = vec![(base, None, 0)];
@@ -50,6 +48,14 @@ pub(super) fn only(tree: &Tree, base: usize, locks: &Locks, diagnostics: &mut Di
     if !groups.is_empty() {
         frames.into_iter().for_each(|frame| groups.entry(frame.last).or_default().push(frame));
     }
+    groups
+}
+
+/// The only leaf with a moving joint above it, with notes; where several differ by fixed joints alone, the link of the last joint that moves.
+///
+/// A site whose name is that of a tool's frame counts as a leaf: it is to a MuJoCo model what a link without mass is to a URDF.
+pub(super) fn only(tree: &Tree, base: usize, locks: &Locks, diagnostics: &mut Diagnostics) -> Option<(usize, Vec<String>)> {
+    let mut groups = leaves(tree, base, locks);
     let mut notes = Vec::new();
     if groups.len() > 1 {
         let Some(note) = keep_the_longest_of_a_series(tree, base, &mut groups) else {
@@ -90,6 +96,58 @@ pub(super) fn only(tree: &Tree, base: usize, locks: &Locks, diagnostics: &mut Di
     );
     notes.push(note);
     Some((tip, notes))
+}
+
+/// All leaves that a joint moves, those that differ by fixed joints alone once, in the order of the file; with notes. Of more than have names
+/// those with the most joints.
+pub(super) fn all(tree: &Tree, base: usize, locks: &Locks, diagnostics: &mut Diagnostics) -> Option<(Vec<usize>, Vec<String>)> {
+    let groups = leaves(tree, base, locks);
+    let best = |leaves: &Vec<Candidate>| {
+        let rank = |leaf: &&Candidate| names::tool(&tree.links[leaf.link].name).unwrap_or(usize::MAX);
+        let named = leaves.iter().min_by_key(rank).filter(|leaf| names::tool(&tree.links[leaf.link].name).is_some());
+        let only = match &leaves[..] {
+            [only] => Some(only.link),
+            _ => None,
+        };
+        let link = named.map(|leaf| leaf.link).or(only).unwrap_or(tree.joints[leaves[0].last].child);
+        Candidate { link, ..leaves[0] }
+    };
+    // A joint whose link carries others that move ends no branch.
+    let inner = |last: usize| groups.keys().any(|&other| other != last && is_above(tree, last, other));
+    let mut ends: Vec<Candidate> = groups.iter().filter(|(&last, _)| !inner(last)).map(|(_, leaves)| best(leaves)).collect();
+    if ends.is_empty() {
+        let message = format!("nothing moves below `{}`", shown(&tree.links[base].name));
+        let help = "an arm has a joint that turns or slides; is the right `--base` given?";
+        diagnostics.push(Diagnostic::new(Code::NoJoints, tree.links[base].span, message, "", help));
+        return None;
+    }
+    let mut notes = Vec::new();
+    if let Some(more) = ends.len().checked_sub(MAX_TIPS).filter(|more| *more > 0) {
+        let message = format!(
+            "{} branches end with a link that moves, more than the {MAX_TIPS} end effectors that a robot has",
+            ends.len()
+        );
+        let help = format!("name up to {MAX_TIPS} by `--tip`, or lock joints of {more} branches with `--lock JOINT=0`");
+        diagnostics.push(Diagnostic::new(Code::SeveralTips, tree.links[ends[MAX_TIPS].link].span, message, "one too many", help));
+        return None;
+    }
+    ends.sort_by_key(|end| end.last);
+    let named: Vec<String> =
+        ends.iter().map(|end| format!("`{}` ({})", shown(&tree.links[end.link].name), number(end.joints))).collect();
+    notes.push(format!("end effectors: {}", named.join(", ")));
+    Some((ends.into_iter().map(|end| end.link).collect(), notes))
+}
+
+/// Whether a joint is above another one.
+fn is_above(tree: &Tree, above: usize, joint: usize) -> bool {
+    let mut at = tree.joints[joint].parent;
+    while let Some(next) = tree.links[at].above {
+        if next == above {
+            return true;
+        }
+        at = tree.joints[next].parent;
+    }
+    false
 }
 
 /// Where all moving joints follow each other, leaves on earlier links are covers or cameras: removes these, and notes them.

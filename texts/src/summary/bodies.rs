@@ -95,7 +95,8 @@ fn small(value: f64, scale: f64) -> String {
 fn carriers(manipulator: &Manipulator) -> impl Iterator<Item = (String, &[PlacedBody])> {
     let links =
         manipulator.joints.iter().enumerate().map(|(i, joint)| (format!("{} {}", i + 1, joint.name), joint.link.as_slice()));
-    links.chain(manipulator.payload.iter().map(|load| ("payload".into(), std::slice::from_ref(load))))
+    let called = |of: Option<&str>| of.map_or_else(|| "payload".into(), |tip| format!("payload of {tip}"));
+    links.chain(manipulator.loads().into_iter().map(move |load| (called(load.of), std::slice::from_ref(load.body))))
 }
 
 /// Mass and centre of mass, one row per link and one of the load. `distances` of the links come from `posture::distances`.
@@ -175,7 +176,7 @@ const DENSITY: &str = "kg/m³";
 fn of_masses(masses: &Table, manipulator: &Manipulator) -> String {
     let if_shown = |column: &str, words| if masses.shows(column) { words } else { "" };
     legend(&[
-        if manipulator.payload.is_some() {
+        if !manipulator.loads().is_empty() {
             "com: in the link's own frame, that of the payload in the end effector's"
         } else {
             "com: in the link's own frame"

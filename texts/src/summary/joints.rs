@@ -35,7 +35,7 @@ pub(super) fn rows(source: &Source, description: &RobotDescription, manipulator:
             Some(row) => (dh_row(source, row, i, manipulator, convention == Some(Convention::Modified)), Default::default()),
         };
         // A joint hangs on the one above, but for those that begin a branch.
-        let on = match joint.parent.map(|parent| parent.0 as usize) {
+        let on = match joint.parent.map(|parent| parent.index()) {
             parent if parent == i.checked_sub(1) => String::new(),
             parent => format!(", on {}", parent.map_or("the base", |parent| &manipulator.joints[parent].name)),
         };

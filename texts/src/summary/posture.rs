@@ -38,14 +38,14 @@ struct Step {
 impl Frames {
     pub(super) fn of(manipulator: &Manipulator) -> Frames {
         let step = |joint: &Joint| Step {
-            parent: joint.parent.map(|link| link.0 as usize),
+            parent: joint.parent.map(|link| link.index()),
             before: isometry(manipulator, &joint.row.before.frame),
             axis: Unit::new_normalize(Vector3::from(joint.row.axis.each_ref().map(Number::to_f64))),
             kind: joint.kind,
             after: isometry(manipulator, &joint.row.after.frame),
         };
         let tool = isometry(manipulator, &manipulator.tool.frame);
-        Frames { joints: manipulator.joints.iter().map(step).collect(), tip: manipulator.tip.0 as usize, tool }
+        Frames { joints: manipulator.joints.iter().map(step).collect(), tip: manipulator.tip.index(), tool }
     }
 
     /// The arm at joint variables.
@@ -110,15 +110,18 @@ impl Posture {
 
     /// The masses on a link: itself, the load, and the rotors of the joints after it.
     fn masses<'a>(&'a self, manipulator: &'a Manipulator, link: usize) -> impl Iterator<Item = (f64, Point3<f64>)> + 'a {
-        let is_here = move |id: LinkId| id.0 as usize == link;
-        let load = manipulator.payload.iter().filter(move |_| is_here(manipulator.tip));
-        let load = load.filter_map(|part| Posture::placed(manipulator, &self.flange, std::slice::from_ref(part)));
+        let is_here = move |id: LinkId| id.index() == link;
+        let loads = manipulator.loads().into_iter().filter(move |load| load.link == link);
+        let loads = loads.filter_map(move |load| {
+            let end = self.links[link] * isometry(manipulator, &load.tool.frame);
+            Posture::placed(manipulator, &end, std::slice::from_ref(load.body))
+        });
         let driven = manipulator.joints.iter().filter(move |next| next.parent.is_some_and(is_here));
         let rotors = driven.filter_map(|next| next.motor.as_ref()).map(move |motor| {
             let place = Point3::from(motor.position.each_ref().map(|x| number(manipulator, x)));
             (number(manipulator, &motor.mass), self.links[link] * place)
         });
-        self.of_link(manipulator, link).into_iter().chain(load).chain(rotors)
+        self.of_link(manipulator, link).into_iter().chain(loads).chain(rotors)
     }
 
     /// The torque or force of joint `i` that holds the arm against gravity; springs are not counted.
@@ -136,8 +139,7 @@ impl Posture {
 
 /// Whether joint `i` moves `link`.
 fn is_moved_by(manipulator: &Manipulator, link: usize, i: usize) -> bool {
-    std::iter::successors(Some(link), |&link| manipulator.joints[link].parent.map(|parent| parent.0 as usize))
-        .any(|link| link == i)
+    std::iter::successors(Some(link), |&link| manipulator.joints[link].parent.map(|parent| parent.index())).any(|link| link == i)
 }
 
 fn number(manipulator: &Manipulator, value: &Polynomial) -> f64 {
@@ -158,11 +160,10 @@ pub(super) fn distances(manipulator: &Manipulator) -> Vec<[Option<f64>; 2]> {
     let turns = |i: usize| manipulator.joints[i].kind == JointKind::Revolute;
     let of = |i: usize| {
         let axis = &posture.axes[i];
-        let next =
-            (i + 1..manipulator.dof()).find(|&next| manipulator.joints[next].parent.is_some_and(|link| link.0 as usize == i));
+        let next = (i + 1..manipulator.dof()).find(|&next| manipulator.joints[next].parent.is_some_and(|link| link.index() == i));
         let next = match next {
             Some(next) => turns(next).then(|| axis.to(&posture.axes[next])),
-            None => (manipulator.tip.0 as usize == i).then(|| axis.from(&posture.flange.translation.vector.into())),
+            None => (manipulator.tip.index() == i).then(|| axis.from(&posture.flange.translation.vector.into())),
         };
         match turns(i) {
             true => [posture.of_link(manipulator, i).map(|(_, com)| axis.from(&com)), next],

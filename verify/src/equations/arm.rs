@@ -2,7 +2,7 @@
 
 use armgen_description::exact::{Number, Polynomial};
 use armgen_description::kinds::JointKind;
-use armgen_description::manipulator::{self, Manipulator};
+use armgen_description::manipulator::{self, LinkId, Manipulator};
 
 use super::vector::{add, dot, product, scale, sub, transpose, Matrix, Vector};
 use crate::arithmetic::Arithmetic;
@@ -87,6 +87,23 @@ pub struct Joint<E> {
     pub armature: E,
 }
 
+/// An end effector.
+#[derive(Clone, Debug)]
+pub struct Tip<E> {
+    /// What the names of its functions begin with; empty if it has no name.
+    pub prefix: String,
+    /// What the names of its payload's parameters begin with, likewise.
+    pub of_load: String,
+    /// The link that carries it.
+    pub link: usize,
+    /// Its frame in that link's frame.
+    pub tool: Frame<E>,
+    /// Load, in its frame.
+    pub payload: Option<Body<E>>,
+    /// Rows of its task in its Jacobian.
+    pub task: Vec<usize>,
+}
+
 /// The arm.
 #[derive(Clone, Debug)]
 pub struct Arm<E> {
@@ -94,12 +111,8 @@ pub struct Arm<E> {
     pub joints: Vec<Joint<E>>,
     /// Acceleration of gravity in the base frame.
     pub gravity: Vector<E>,
-    /// The link with the end effector.
-    pub tip: usize,
-    /// End effector in the tip's link frame.
-    pub tool: Frame<E>,
-    /// Load, in the end-effector frame.
-    pub payload: Option<Body<E>>,
+    /// The end effectors: those with names, or the only one.
+    pub tips: Vec<Tip<E>>,
     /// 0.
     pub zero: E,
     /// 1.
@@ -203,7 +216,7 @@ impl<K: Arithmetic> Builder<'_, K> {
         };
         Some(Joint {
             revolute: joint.kind == JointKind::Revolute,
-            parent: joint.parent.map(|link| link.0 as usize),
+            parent: joint.parent.map(|link| link.index()),
             before: self.pose(&joint.row.before)?,
             axis: self.row(&joint.row.axis)?,
             after: self.pose(&joint.row.after)?,
@@ -267,16 +280,28 @@ impl<E: Element> Arm<E> {
         for joint in &manipulator.joints {
             joints.push(builder.joint(joint)?);
         }
-        let payload = match &manipulator.payload {
-            None => None,
-            Some(part) => Some(builder.lumped(std::slice::from_ref(part))?),
+        let tip = |name: Option<&str>, link: LinkId, tool: &manipulator::Pose, load: Option<&manipulator::PlacedBody>, task| {
+            let payload = match load {
+                None => None,
+                Some(part) => Some(builder.lumped(std::slice::from_ref(part))?),
+            };
+            let begin = |name: Option<String>| name.map_or(String::new(), |name| name + "_");
+            let (prefix, of_load) = (begin(name.map(str::to_ascii_lowercase)), begin(name.map(str::to_owned)));
+            Some(Tip { prefix, of_load, link: link.index(), tool: builder.pose(tool)?, payload, task })
         };
+        let mut tips = Vec::new();
+        if manipulator.tips.is_empty() {
+            let (link, tool, load) = (manipulator.tip, &manipulator.tool, manipulator.payload.as_ref());
+            tips.push(tip(None, link, tool, load, manipulator.task_rows())?);
+        }
+        for named in &manipulator.tips {
+            let rows = named.task.iter().map(|row| row.index()).collect();
+            tips.push(tip(Some(&named.name), named.joint, &named.tool, named.payload.as_ref(), rows)?);
+        }
         Some(Arm {
             joints,
             gravity: builder.vector(&manipulator.gravity)?,
-            tip: manipulator.tip.0 as usize,
-            tool: builder.pose(&manipulator.tool)?,
-            payload,
+            tips,
             zero: arithmetic.integer(0),
             one: arithmetic.integer(1),
         })
@@ -323,9 +348,18 @@ impl<E: Element> Arm<E> {
         Arm {
             joints: joints.collect(),
             gravity: vector(&self.gravity),
-            tip: self.tip,
-            tool: frame(&self.tool),
-            payload: self.payload.as_ref().map(body),
+            tips: self
+                .tips
+                .iter()
+                .map(|tip| Tip {
+                    prefix: tip.prefix.clone(),
+                    of_load: tip.of_load.clone(),
+                    link: tip.link,
+                    tool: frame(&tip.tool),
+                    payload: tip.payload.as_ref().map(body),
+                    task: tip.task.clone(),
+                })
+                .collect(),
             zero: f(&self.zero),
             one: f(&self.one),
         }

@@ -34,9 +34,9 @@ struct Placed<E> {
 /// Links, load, and rotor masses.
 fn bodies<E: Element>(arm: &Arm<E>, pose: &Pose<E>) -> Vec<Placed<E>> {
     let mut bodies = Vec::new();
-    let load = arm.payload.as_ref().map(|body| (arm.tip, &pose.tool, body));
+    let loads = arm.tips.iter().zip(&pose.tools).filter_map(|(tip, tool)| Some((tip.link, tool, tip.payload.as_ref()?)));
     let links = arm.joints.iter().enumerate().map(|(i, joint)| (i, &pose.links[i], &joint.link));
-    for (link, frame, body) in links.chain(load) {
+    for (link, frame, body) in links.chain(loads) {
         let inertia = product(&product(&frame.rotation, &body.inertia), &transpose(&frame.rotation));
         bodies.push(Placed { mass: body.mass.clone(), com: frame.point(&body.com), link: Some(link), inertia: Some(inertia) });
     }

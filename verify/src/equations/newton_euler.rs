@@ -99,7 +99,7 @@ pub enum Carrier {
     /// A link, in its link frame.
     Link(usize),
     /// The end effector.
-    Tool,
+    Tool(usize),
 }
 
 impl<'a, E: Element> ArmMotion<'a, E> {
@@ -134,7 +134,7 @@ impl<'a, E: Element> ArmMotion<'a, E> {
     pub fn add_body(&self, carrier: Carrier, ten: &[E], torques: &mut [E]) {
         let (link, frame) = match carrier {
             Carrier::Link(link) => (link, &self.pose.links[link]),
-            Carrier::Tool => (self.arm.tip, &self.pose.tool),
+            Carrier::Tool(tip) => (self.arm.tips[tip].link, &self.pose.tools[tip]),
         };
         if ten.iter().all(Element::is_zero) {
             return;
@@ -207,8 +207,10 @@ impl<'a, E: Element> ArmMotion<'a, E> {
                 self.add_rotor_inertia(i, &motor.inertia, &mut torques);
             }
         }
-        if let Some(load) = &self.arm.payload {
-            self.add_body(Carrier::Tool, &ten(load), &mut torques);
+        for (tip, end) in self.arm.tips.iter().enumerate() {
+            if let Some(load) = &end.payload {
+                self.add_body(Carrier::Tool(tip), &ten(load), &mut torques);
+            }
         }
         torques
     }

@@ -38,8 +38,8 @@ pub enum Standard {
     Stribeck(usize),
     /// Stiffness of a joint's spring.
     Stiffness(usize),
-    /// One of the ten of the payload.
-    Payload(usize),
+    /// One of the ten of the payload of an end effector, by its number.
+    Payload(usize, usize),
 }
 
 /// The unit of a parameter, or a unit of its own.
@@ -61,9 +61,9 @@ impl Standard {
     /// The unit of this parameter, which has this number.
     pub fn unit(self, number: usize) -> Unit {
         match self {
-            Standard::Link(_, 0) | Standard::Payload(0) => Unit::Mass,
-            Standard::Link(_, 1..=3) | Standard::Payload(1..=3) => Unit::Moment,
-            Standard::Link(..) | Standard::Payload(_) => Unit::Inertia,
+            Standard::Link(_, 0) | Standard::Payload(_, 0) => Unit::Mass,
+            Standard::Link(_, 1..=3) | Standard::Payload(_, 1..=3) => Unit::Moment,
+            Standard::Link(..) | Standard::Payload(..) => Unit::Inertia,
             _ => Unit::Own(number),
         }
     }
@@ -93,8 +93,8 @@ impl Standard {
             ];
             all.extend(given.iter().filter(|(given, _)| *given).map(|(_, parameter)| *parameter));
         }
-        if manipulator.payload.is_some() {
-            all.extend((0..10).map(Standard::Payload));
+        for load in manipulator.loads() {
+            all.extend((0..10).map(|k| Standard::Payload(load.end, k)));
         }
         all
     }
@@ -112,8 +112,17 @@ impl Standard {
             Standard::Cubic(i) => format!("F3_{}", i + 1),
             Standard::Stribeck(i) => format!("Fs{}", i + 1),
             Standard::Stiffness(i) => format!("ks{}", i + 1),
-            Standard::Payload(k) => format!("{}p", TEN[k]),
+            Standard::Payload(_, k) => format!("{}p", TEN[k]),
         }
+    }
+
+    /// The same with the name of the end effector before that of a payload's, where it has a name.
+    fn full_name(self, manipulator: &Manipulator) -> String {
+        let tip = match self {
+            Standard::Payload(tip, _) => manipulator.tips.get(tip),
+            _ => None,
+        };
+        tip.map_or(String::new(), |tip| format!("{}_", tip.name)) + &self.name()
     }
 
     /// Its value for an arm.
@@ -130,7 +139,7 @@ impl Standard {
             Standard::Cubic(i) => arm.joints[i].cubic.clone(),
             Standard::Stribeck(i) => arm.joints[i].stribeck.clone(),
             Standard::Stiffness(i) => arm.joints[i].stiffness.clone(),
-            Standard::Payload(k) => arm.payload.as_ref().map_or(arm.zero.clone(), |p| ten(p)[k].clone()),
+            Standard::Payload(tip, k) => arm.tips[tip].payload.as_ref().map_or(arm.zero.clone(), |p| ten(p)[k].clone()),
         }
     }
 }
@@ -139,11 +148,11 @@ impl Standard {
 pub fn with_standard<E: Element>(arm: &Arm<E>, columns: &[Standard], values: &[E]) -> Option<Arm<E>> {
     let mut arm = arm.clone();
     let (n, zero) = (arm.dof(), arm.zero.clone());
-    let mut tens = vec![vec![zero.clone(); 10]; n + 1];
+    let mut tens = vec![vec![zero.clone(); 10]; n + arm.tips.len()];
     for (column, value) in columns.iter().zip(values) {
         match *column {
             Standard::Link(i, k) => tens[i][k] = value.clone(),
-            Standard::Payload(k) => tens[n][k] = value.clone(),
+            Standard::Payload(tip, k) => tens[n + tip][k] = value.clone(),
             Standard::RotorInertia(i) => arm.joints[i].motor.as_mut()?.inertia = value.clone(),
             Standard::Armature(i) => arm.joints[i].armature = value.clone(),
             Standard::RotorViscous(i) => arm.joints[i].motor.as_mut()?.viscous = value.clone(),
@@ -157,12 +166,12 @@ pub fn with_standard<E: Element>(arm: &Arm<E>, columns: &[Standard], values: &[E
     }
     let nothing = Body { mass: zero.clone(), com: arm.nothing(), inertia: [0; 3].map(|_| arm.nothing()) };
     let of = |ten: &[E]| if ten.iter().all(Element::is_zero) { Some(nothing.clone()) } else { body(ten) };
-    let load = tens.pop()?;
+    let loads = tens.split_off(n);
     for (joint, ten) in arm.joints.iter_mut().zip(&tens) {
         joint.link = of(ten)?;
     }
-    if arm.payload.is_some() {
-        arm.payload = Some(of(&load)?);
+    for (tip, load) in arm.tips.iter_mut().zip(&loads).filter(|(tip, _)| tip.payload.is_some()) {
+        tip.payload = Some(of(load)?);
     }
     Some(arm)
 }
@@ -199,9 +208,9 @@ pub fn standard_columns<E: Element>(arm: &Arm<E>, state: &State<E>, columns: &[S
                 let unit = unit(k);
                 reference.torques(&|moving, torques| moving.add_body(Carrier::Link(i), &unit, torques))
             }
-            Standard::Payload(k) => {
+            Standard::Payload(tip, k) => {
                 let unit = unit(k);
-                of_rotors.torques(&|moving, torques| moving.add_body(Carrier::Tool, &unit, torques))
+                of_rotors.torques(&|moving, torques| moving.add_body(Carrier::Tool(tip), &unit, torques))
             }
             Standard::RotorInertia(i) => of_rotors.torques(&|moving, torques| moving.add_rotor_inertia(i, &arm.one, torques)),
             Standard::Armature(i) => single(i, state.ddqr[i].clone()),
@@ -238,6 +247,11 @@ impl<E: Element> KeptAlone<'_, E> {
         kept.or(zero).unwrap_or(otherwise).clone()
     }
 
+    /// The end effectors with payloads.
+    fn loaded(&self) -> impl Iterator<Item = usize> + '_ {
+        self.arm.tips.iter().enumerate().filter(|(_, tip)| tip.payload.is_some()).map(|(number, _)| number)
+    }
+
     fn ten(&self, of: impl Fn(usize) -> Standard) -> Vec<E> {
         (0..10).map(|k| self.of(of(k), &self.arm.zero)).collect()
     }
@@ -258,8 +272,8 @@ impl<E: Element> KeptAlone<'_, E> {
                     moving.add_rotor_inertia(i, &self.of(Standard::RotorInertia(i), &motor.inertia), torques);
                 }
             }
-            if self.arm.payload.is_some() {
-                moving.add_body(Carrier::Tool, &self.ten(Standard::Payload), torques);
+            for tip in self.loaded() {
+                moving.add_body(Carrier::Tool(tip), &self.ten(|k| Standard::Payload(tip, k)), torques);
             }
         });
         of_links.iter().zip(&of_others).map(|(a, b)| a.plus(b)).collect()
@@ -304,8 +318,8 @@ impl<E: Element> KeptAlone<'_, E> {
     pub fn potential_energy(&self, state: &State<E>) -> E {
         let described = Pose::new(self.arm, state);
         let links = (0..self.arm.dof()).map(|i| (&described.chosen[i], self.ten(|k| Standard::Link(i, k))));
-        let load = self.arm.payload.as_ref().map(|_| (&described.tool, self.ten(Standard::Payload)));
-        let of_bodies = links.chain(load).fold(self.arm.zero.clone(), |sum, (frame, ten)| {
+        let loads = self.loaded().map(|tip| (&described.tools[tip], self.ten(|k| Standard::Payload(tip, k))));
+        let of_bodies = links.chain(loads).fold(self.arm.zero.clone(), |sum, (frame, ten)| {
             let h = [1, 2, 3].map(|k| ten[k].clone());
             sum.minus(&dot(&self.arm.gravity, &add(&scale(&ten[0], &frame.origin), &frame.direction(&h))))
         });
@@ -364,7 +378,7 @@ impl Vector {
     pub fn names(&self, manipulator: &Manipulator) -> Option<Vec<String>> {
         match self {
             Vector::Names(ids) => Some(ids.iter().map(|&id| manipulator.parameters[id].name.clone()).collect()),
-            Vector::Standard(columns) => Some(columns.iter().map(|c| c.name()).collect()),
+            Vector::Standard(columns) => Some(columns.iter().map(|c| c.full_name(manipulator)).collect()),
             Vector::Base(..) => None,
         }
     }
@@ -378,7 +392,7 @@ pub fn units(parameters: impl Iterator<Item = Standard>) -> Vec<Unit> {
 /// Base parameters from their names, each with a flag for combinations.
 pub fn base_parameters(manipulator: &Manipulator, names: &[String]) -> Result<Vec<(Standard, bool)>, String> {
     let all = Standard::all(manipulator);
-    let find = |name: &str| all.iter().copied().find(|p| p.name() == name);
+    let find = |name: &str| all.iter().copied().find(|p| p.full_name(manipulator) == name);
     let base = |name: &String| {
         let carrying = || Some((find(name.strip_suffix('R')?)?, true));
         find(name).map(|p| (p, false)).or_else(carrying).ok_or(format!("`{name}` is no base parameter's name"))

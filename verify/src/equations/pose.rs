@@ -16,8 +16,8 @@ pub struct Pose<E> {
     pub chosen: Vec<Frame<E>>,
     /// The link frames of the description.
     pub links: Vec<Frame<E>>,
-    /// The end effector.
-    pub tool: Frame<E>,
+    /// The end effectors.
+    pub tools: Vec<Frame<E>>,
     /// For each link the joints that move it, from its own joint to the base.
     pub ancestors: Vec<Vec<usize>>,
     revolute: Vec<bool>,
@@ -97,9 +97,9 @@ impl<E: Element> Pose<E> {
             ancestors.push(path);
         }
         let chosen = links.iter().zip(&arm.joints).map(|(frame, joint)| frame.then(&joint.chosen)).collect();
-        let tool = links[arm.tip].then(&arm.tool);
+        let tools = arm.tips.iter().map(|tip| links[tip.link].then(&tip.tool)).collect();
         let revolute = arm.joints.iter().map(|j| j.revolute).collect();
-        Pose { joints, axes, chosen, links, tool, ancestors, revolute, zero: zero.clone() }
+        Pose { joints, axes, chosen, links, tools, ancestors, revolute, zero: zero.clone() }
     }
 
     /// The same pose with the links in the frames for base parameters.
@@ -119,9 +119,9 @@ impl<E: Element> Pose<E> {
         columns
     }
 
-    /// The geometric Jacobian, row by row: linear, then angular.
-    pub fn geometric_jacobian(&self, tip: usize) -> Vec<E> {
-        let columns = self.jacobian(Some(tip), &self.tool.origin);
+    /// The geometric Jacobian of the end effector of this number, on this link, row by row: linear, then angular.
+    pub fn geometric_jacobian(&self, tip: usize, link: usize) -> Vec<E> {
+        let columns = self.jacobian(Some(link), &self.tools[tip].origin);
         let linear = (0..3).flat_map(|row| columns.iter().map(move |(v, _)| v[row].clone()));
         let angular = (0..3).flat_map(|row| columns.iter().map(move |(_, w)| w[row].clone()));
         linear.chain(angular).collect()

@@ -30,7 +30,7 @@ impl Chain {
     pub(super) fn of(manipulator: &Manipulator, field: &Prime) -> Option<Chain> {
         let arm = Arm::nominal(field, manipulator).and_then(|nominal| Arm::new(field, manipulator, &nominal))?;
         let modulus = Modulus::new(field.prime());
-        let mut path = vec![arm.tip];
+        let mut path = vec![arm.tips[0].link];
         while let Some(parent) = arm.joints[path[path.len() - 1]].parent {
             path.push(parent);
         }
@@ -48,7 +48,7 @@ impl Chain {
             axes.push(joint.axis.each_ref().map(number));
             link = joint.after.clone();
         }
-        links.push(frame(&link.then(&arm.tool)));
+        links.push(frame(&link.then(&arm.tips[0].tool)));
         if is_pointing(manipulator) {
             slides.push(false);
             axes.push([0, 0, modulus.one]);

@@ -202,7 +202,7 @@ impl RationalPose {
         };
         let state =
             State::of(arguments, self.values.iter().map(angle).collect(), zeros, [number(Rational::ZERO), number(Rational::ONE)]);
-        let tool = Pose::new(arm, &state).tool;
+        let tool = Pose::new(arm, &state).tools.swap_remove(0);
         let away = number(Rational::from(self.away));
         std::array::from_fn(|i| {
             std::array::from_fn(|j| match j {

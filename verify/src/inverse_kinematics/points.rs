@@ -53,6 +53,7 @@ impl Constants {
 pub(super) fn without_bodies(manipulator: &Manipulator) -> Manipulator {
     let mut arm = manipulator.clone();
     arm.payload = None;
+    arm.tips.clear();
     for joint in &mut arm.joints {
         joint.motor = None;
         joint.link.truncate(1);

@@ -26,7 +26,7 @@ use super::items::{Part, Public, INTO};
 use super::lexer::{Fault, Kind, Token};
 use super::parser::{Parser, Reads};
 use crate::check::Check;
-use crate::contract::{Promise, Returned};
+use crate::contract::{of_tip, Promise, Returned};
 use crate::enclosure::Float;
 use crate::program::{Angle, Argument, Output, Program, Step};
 
@@ -121,7 +121,7 @@ pub(super) fn compile<'a>(function: &Public<'a>, shared: &Shared<'a, '_>) -> Res
         Some((body, (promise, _))) => {
             compiler.parser.expect("{")?;
             let written = format!("{}{INTO}", function.name);
-            compiler.parser.expect_lists(&promise.calls_written(&function.arguments, &written))?;
+            compiler.parser.expect_lists(&of_tip(function.name, &promise.calls_written(&function.arguments, &written)))?;
             compiler.parser.expect("result }")?;
             compiler.parser = body;
             compiler.parser.expect("{")?;

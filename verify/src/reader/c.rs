@@ -15,12 +15,12 @@ use std::collections::BTreeMap;
 
 use armgen_description::language::Language;
 
-use super::plain::{promised, sizes, Body, Comments, Constants, Functions, Lines, Syntax, CONSTANTS};
+use super::plain::{in_order, promised, sizes, Body, Comments, Constants, Functions, Lines, Syntax};
 use super::{Constant, Fault, Function, Module};
 use crate::check::Check;
-use crate::contract::{Array, Length, Returned, Sizes};
+use crate::contract::{of_tip, Array, Length, Returned, Sizes};
 use crate::enclosure::Float;
-use crate::program::{Argument, Step, NOMINAL_GRAVITY};
+use crate::program::{Argument, Step, NOMINAL_GRAVITY, TIPS};
 
 pub(super) const COMMENTS: Comments = Comments { line: None, block: Some(("/*", "*/")), behind: "" };
 
@@ -166,7 +166,8 @@ pub(super) fn read(text: &str, language: Language) -> Result<Module, Fault> {
     // The kernels begin with the same line.
     let own_epilogue = robot.own(EPILOGUE);
     let end = Lines::new(&own_epilogue, COMMENTS)?;
-    let mut reader = Reader { robot: &robot, syntax: &syntax, real, sizes, parts: BTreeMap::new(), steps: 0, asks: [false; 3] };
+    let mut reader =
+        Reader { robot: &robot, syntax: &syntax, real, sizes: sizes.clone(), parts: BTreeMap::new(), steps: 0, asks: [false; 3] };
     let functions = reader.all(&mut lines, end.peek(), [trig.is_some(), sign, stribeck])?;
     if language == Language::Cuda {
         kernels::read(&mut lines, &robot, &sizes, functions.iter().map(|(name, _)| name.as_str()))?;
@@ -186,39 +187,41 @@ fn constants(
 ) -> Result<BTreeMap<String, Constant>, Fault> {
     let form =
         Constants { real, suffix, quotes: '"', list: |_, _| ["{", ", ", "}", "{}"], truth: ["0", "1"], infinity: "INFINITY" };
-    let mut constants = BTreeMap::new();
+    let mut constants: BTreeMap<String, Constant> = BTreeMap::new();
     // In this order; those after the common ones exist only for arms that need them.
-    for name in ["NAME", "JOINT_IS_REVOLUTE", "", "DOF", "PARAMETERS", "TASK_ROWS", "TASK", "JOINT_NAMES"]
+    let order = ["NAME", "JOINT_IS_REVOLUTE", "", "DOF", "PARAMETERS", "TASK_ROWS", "TASK", TIPS, "JOINT_NAMES"]
         .into_iter()
         .chain(["POSITION_LIMITS", "VELOCITY_LIMITS", "EFFORT_LIMITS", "ACCELERATION_LIMITS", "JERK_LIMITS"])
         .chain(["PARAMETER_NAMES", "NOMINAL_PARAMETERS"])
-        .chain([NOMINAL_GRAVITY, "BASE_PARAMETERS", "BASE_PARAMETER_NAMES", "NOMINAL_BASE_PARAMETERS"])
-    {
+        .chain([NOMINAL_GRAVITY, "BASE_PARAMETERS", "BASE_PARAMETER_NAMES", "NOMINAL_BASE_PARAMETERS"]);
+    in_order(order, |name| {
         if name.is_empty() {
             lines.expect(&format!("typedef {word} {}_real;", robot.name))?;
-            continue;
+            return Ok(None);
         }
         let begin = format!("#define {}_{name} ", robot.upper);
         let none = |of: &str| constants.get(of).is_none_or(|count| *count == Constant::Integer(0));
         let left_out = match name {
             "TASK" => none("TASK_ROWS"),
             "PARAMETER_NAMES" | "NOMINAL_PARAMETERS" => none("PARAMETERS"),
-            NOMINAL_GRAVITY | "BASE_PARAMETERS" => !lines.peek().starts_with(&begin),
+            NOMINAL_GRAVITY | "BASE_PARAMETERS" | "TASK_ROWS" | TIPS => !lines.peek().starts_with(&begin),
             "BASE_PARAMETER_NAMES" | "NOMINAL_BASE_PARAMETERS" => none("BASE_PARAMETERS"),
             _ => false,
         };
         if left_out {
             // C has no arrays of length 0.
-            if ["TASK", "PARAMETER_NAMES", "NOMINAL_PARAMETERS"].contains(&name) {
+            let count = if name == "TASK" { "TASK_ROWS" } else { "PARAMETERS" };
+            if ["TASK", "PARAMETER_NAMES", "NOMINAL_PARAMETERS"].contains(&name) && constants.contains_key(count) {
                 constants.insert(name.into(), Constant::Array(Vec::new()));
             }
-            continue;
+            return Ok(None);
         }
         let number = lines.number();
         let value = lines.between(&begin, "")?;
-        constants.insert(name.into(), form.read(name, value, number)?);
-    }
-    debug_assert!(constants.keys().all(|name| CONSTANTS.iter().any(|(known, ..)| known == name)));
+        let value = form.read(name, value, number)?;
+        constants.insert(name.into(), value.clone());
+        Ok(Some(value))
+    })?;
     Ok(constants)
 }
 
@@ -258,6 +261,7 @@ impl<'a> Functions<'a> for Reader<'a, '_> {
             self.part(lines, name)?;
             return Ok(None);
         }
+        self.sizes = self.sizes.of_function(name);
         let known = promised(name, &self.sizes);
         let (promise, arguments) = known.ok_or_else(|| here(format!("`{name}` is not a function that an emitted module has")))?;
         let number = promise.returned == Returned::One(&[]);
@@ -276,7 +280,7 @@ impl<'a> Functions<'a> for Reader<'a, '_> {
             all.extend(results.iter().map(of_result));
         }
         for (i, argument) in all.iter().enumerate() {
-            lines.expect(&format!("{argument}{}", if i + 1 == all.len() { ")" } else { "," }))?;
+            lines.expect(&format!("{}{}", of_tip(name, argument), if i + 1 == all.len() { ")" } else { "," }))?;
         }
         lines.expect("{")?;
         lines.expect(&format!("    {upper}_UNFUSED"))?;

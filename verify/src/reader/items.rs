@@ -8,9 +8,9 @@ use super::lexer::{Fault, Kind, Lexer, Token};
 use super::parser::Parser;
 use super::sines::{self, Private};
 use crate::check::Check;
-use crate::contract::Promise;
+use crate::contract::{of_tip, Promise};
 use crate::enclosure::Float;
-use crate::program::{Argument, NOMINAL_GRAVITY};
+use crate::program::{Argument, NOMINAL_GRAVITY, TIPS};
 use crate::reference::BASE_REGRESSOR;
 
 const LINTS: &str = "#[allow(dead_code)]";
@@ -78,7 +78,7 @@ pub(super) struct Items<'a> {
     /// Whether the acceleration of free fall is an argument.
     gravity: bool,
     /// Type and position of each constant's value.
-    pub(super) constants: BTreeMap<&'a str, (&'static str, Parser<'a>)>,
+    pub(super) constants: BTreeMap<&'a str, (String, Parser<'a>)>,
     /// The position of the struct's documentation.
     pub(super) structure: Option<Parser<'a>>,
     pub(super) public: Vec<Public<'a>>,
@@ -218,9 +218,18 @@ impl<'a> Items<'a> {
     /// A public constant; its value is read once `Real` is known.
     fn constant(&mut self, parser: &mut Parser<'a>, head: Head<'a>) -> Result<(), Fault> {
         let name = head.name;
-        let known = CONSTANTS.into_iter().find(|(known, _)| name.is(known));
-        let (known, ty) =
-            known.ok_or_else(|| name.fault(format!("{} is not a constant that an emitted module has", name.shown())))?;
+        let known = name.text;
+        let ty = match type_of(known) {
+            Some(ty) => ty,
+            // As many as there are end effectors, or joints that move one.
+            None if known == TIPS || is_of_tip(known, "COORDINATES") => {
+                let entry = if known == TIPS { "&str" } else { "usize" };
+                let mut ahead = *parser;
+                ahead.expect(&format!("{LINTS} pub const {known}: [{entry};"))?;
+                format!("[{entry}; {}]", integer(&ahead.peek())?)
+            }
+            None => return Err(name.fault(format!("{} is not a constant that an emitted module has", name.shown()))),
+        };
         let lints = if ty.contains("Real") { ALL_LINTS } else { LINTS };
         parser.expect(&format!("{lints} pub const {known}: {ty} ="))?;
         if self.constants.insert(name.text, (ty, *parser)).is_some() && Check::Once.is_made() {
@@ -256,7 +265,8 @@ impl<'a> Items<'a> {
             return Err(name.fault(format!("function `{}` stands twice", name.text)));
         }
         let arguments = promise.arguments_of(with, self.gravity);
-        signature(parser, &format!("({})->{}", Promise::typed(&arguments).join(","), promise.returned.rust()))?;
+        let returned = of_tip(name.text, &promise.returned.rust());
+        signature(parser, &format!("({})->{returned}", Promise::typed(&arguments).join(",")))?;
         let body = *parser;
         self.public.push(Public { name: name.text, arguments, documentation: head.documentation, body });
         parser.expect("{")?;
@@ -273,7 +283,7 @@ impl<'a> Items<'a> {
             found.ok_or_else(|| name.fault(format!("{} is not a function that an emitted module has", name.shown())))?;
         let public = if promise.has_form_into() { "pub " } else { "" };
         parser.expect(&format!("{ALL_LINTS} {public}fn {}", name.text))?;
-        let results = results.into_iter().map(|(name, of)| format!("{name}:&mut{of}"));
+        let results = results.into_iter().map(|(name, of)| format!("{name}:&mut{}", of_tip(whole, &of)));
         let all: Vec<String> = Promise::typed(&promise.arguments_of(with, self.gravity)).into_iter().chain(results).collect();
         signature(parser, &format!("({})", all.join(",")))?;
         let body = *parser;
@@ -309,6 +319,19 @@ impl<'a> Items<'a> {
             parser.expect(";")
         }
     }
+}
+
+/// The type of a constant whose name tells it.
+fn type_of(name: &str) -> Option<String> {
+    let known = CONSTANTS.into_iter().find(|(known, _)| *known == name).map(|(_, ty)| ty.to_owned());
+    known
+        .or_else(|| is_of_tip(name, "TASK_ROWS").then(|| "usize".into()))
+        .or_else(|| is_of_tip(name, "TASK").then(|| format!("[usize; {name}_ROWS]")))
+}
+
+/// Whether a name is that of a constant of an end effector.
+fn is_of_tip(name: &str, constant: &str) -> bool {
+    name.strip_suffix(constant).is_some_and(|tip| tip.len() > 1 && tip.ends_with('_'))
 }
 
 /// The first tokens of an item.

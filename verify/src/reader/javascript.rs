@@ -14,7 +14,8 @@ use std::collections::BTreeMap;
 use armgen_description::language::Language;
 
 use super::plain::{
-    camel, is_of_some_arms, names_of, promised, sizes, Body, Comments, Constants, Functions, Lines, Parts, Syntax, CONSTANTS,
+    camel, in_order, is_of_some_arms, names_of, promised, sizes, Body, Comments, Constants, Functions, Lines, Parts, Syntax,
+    CONSTANTS,
 };
 use super::{Constant, Fault, Function, Module};
 use crate::contract::{Length, Returned, Sizes};
@@ -44,16 +45,16 @@ pub(super) fn read(text: &str) -> Result<Module, Fault> {
         truth: ["false", "true"],
         infinity: "Infinity",
     };
-    let mut constants: BTreeMap<String, Constant> = BTreeMap::new();
-    for (name, ..) in CONSTANTS {
+    let read = in_order(CONSTANTS.map(|(name, ..)| name), |name| {
         let begin = format!("export const {name} = ");
         if is_of_some_arms(name) && !lines.peek().starts_with(&begin) {
-            continue;
+            return Ok(None);
         }
         let number = lines.number();
         let value = lines.between(&begin, ";")?;
-        constants.insert(name.into(), form.read(name, value, number)?);
-    }
+        form.read(name, value, number).map(Some)
+    })?;
+    let constants: BTreeMap<String, Constant> = read.into_iter().collect();
     let sizes = sizes(&constants)?;
     lines.expect_all(CHECK, COMMENTS)?;
     let begins = |lines: &Lines<'_>, block: &str, skip: usize| {
@@ -118,10 +119,11 @@ impl<'a> Functions<'a> for Reader<'a, '_> {
         let documentation = lines.all.get(lines.at).map_or(Vec::new(), |line| comment(&line.comment));
         let line = lines.number();
         let (name, names) = lines.between("export function ", ") {")?.split_once('(').unwrap_or_default();
-        let known = names_of().find(|known| camel(known) == name);
+        let known = names_of(&self.sizes).find(|known| camel(known) == name);
         let (own, (promise, arguments)) = known
             .and_then(|own| Some((own.clone(), promised(&own, &self.sizes)?)))
             .ok_or_else(|| Fault { line, reason: format!("`{name}` is not a function that an emitted module has") })?;
+        self.sizes = self.sizes.of_function(&own);
         let wanted: Vec<&str> = arguments.iter().map(|a| a.name()).collect();
         if names != wanted.join(", ") {
             return Err(Fault { line, reason: format!("`{name}` takes ({}), not ({names})", wanted.join(", ")) });

@@ -17,7 +17,8 @@ use std::collections::BTreeMap;
 use armgen_description::language::Language;
 
 use super::plain::{
-    camel, is_of_some_arms, names_of, promised, sizes, Body, Comments, Constants, Entry, Lines, Parts, Syntax, CONSTANTS,
+    camel, in_order, is_of_some_arms, names_of, promised, sizes, Body, Comments, Constants, Entry, Lines, Parts, Syntax,
+    CONSTANTS,
 };
 use super::{Constant, Fault, Function, Module, LONGEST};
 use crate::contract::{Array, Length, Promise, Sizes};
@@ -137,7 +138,7 @@ pub(super) fn read(text: &str) -> Result<Module, Fault> {
         let (name, function) = reader.file(file)?;
         functions.push((name, Ok(function)));
     }
-    let order: Vec<String> = names_of().collect();
+    let order: Vec<String> = names_of(&reader.sizes).collect();
     functions.sort_by_key(|(name, _)| order.iter().position(|other| other == name));
     Ok(Module { trig: reader.trig, head, constants, functions, ..Module::empty(Language::Matlab) })
 }
@@ -158,18 +159,18 @@ fn constants(lines: &mut Lines<'_>) -> Result<BTreeMap<String, Constant>, Fault>
     };
     lines.expect("function m = model()")?;
     lines.expect("    m = struct();")?;
-    let mut constants = BTreeMap::new();
-    for (name, ..) in CONSTANTS {
+    let read = in_order(CONSTANTS.map(|(name, ..)| name), |name| {
         let begin = format!("    m.{} = ", camel(&name.to_ascii_lowercase()));
         if is_of_some_arms(name) && !lines.peek().starts_with(&begin) {
-            continue;
+            return Ok(None);
         }
         let number = lines.number();
         let value = lines.between(&begin, ";")?;
         let value = form.read(name, value, number)?;
-        let value = match value {
-            // MATLAB counts rows from 1.
-            Constant::Array(rows) if name == "TASK" => {
+        let counts = ["TASK", "COORDINATES"].iter().any(|end| name.ends_with(end));
+        Ok(Some(match value {
+            // MATLAB counts rows and joints from 1.
+            Constant::Array(rows) if counts => {
                 let from_0 = |row: &Constant| match row {
                     Constant::Integer(row) => row.checked_sub(1).map(Constant::Integer),
                     _ => None,
@@ -178,9 +179,9 @@ fn constants(lines: &mut Lines<'_>) -> Result<BTreeMap<String, Constant>, Fault>
                 Constant::Array(rows.ok_or_else(|| Fault { line: number, reason: "rows are counted from 1".into() })?)
             }
             value => value,
-        };
-        constants.insert(name.into(), value);
-    }
+        }))
+    })?;
+    let constants = read.into_iter().collect();
     lines.expect("end")?;
     match lines.ended() {
         true => Ok(constants),
@@ -213,10 +214,11 @@ impl Reader<'_> {
         let mut lines = file.lines()?;
         let begin = |reason: String| Fault { line: file.before + 1, reason };
         let name = file.name.strip_suffix(".m").unwrap_or_default();
-        let known = names_of().find(|known| camel(known) == name);
+        let known = names_of(&self.sizes).find(|known| camel(known) == name);
         let (own, (promise, arguments)) = known
             .and_then(|own| Some((own.clone(), promised(&own, &self.sizes)?)))
             .ok_or_else(|| begin(format!("`{}` is not a file that an emitted package has", file.name)))?;
+        self.sizes = self.sizes.of_function(&own);
         // Parts follow the functions that call them.
         let mut parts = Parts::default();
         let begins = lines.all.iter().enumerate().filter(|(_, line)| line.text.starts_with("function "));

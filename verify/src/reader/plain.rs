@@ -17,7 +17,7 @@ mod parts;
 mod place;
 
 pub(super) use body::{Body, Syntax};
-pub(super) use constants::{is_of_some_arms, sizes, Constants, Entry, CONSTANTS};
+pub(super) use constants::{in_order, is_of_some_arms, sizes, Constants, Entry, CONSTANTS};
 pub(super) use lines::{Comments, Lines};
 pub(super) use parts::Parts;
 
@@ -68,10 +68,13 @@ pub(super) trait Functions<'a> {
 /// A function or its fault.
 type Read = Result<Function, String>;
 
-/// The names of all possible functions.
-pub(super) fn names_of() -> impl Iterator<Item = String> {
-    let forms = |promise: &Promise| [promise.name.to_string(), format!("{}_with", promise.name)];
-    crate::reference::PROMISES.iter().flat_map(forms).filter(|name| Promise::of(name).is_some())
+/// The names of all possible functions of a module of these sizes.
+pub(super) fn names_of(sizes: &Sizes) -> impl Iterator<Item = String> {
+    let tips: Vec<String> = match sizes.tips.as_slice() {
+        [] => vec![String::new()],
+        tips => tips.iter().map(|(tip, _)| tip.to_ascii_lowercase() + "_").collect(),
+    };
+    crate::reference::PROMISES.iter().flat_map(move |promise| promise.names(&tips))
 }
 
 /// `inertia_matrix` as `inertiaMatrix`.

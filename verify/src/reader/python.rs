@@ -15,10 +15,10 @@ use std::collections::BTreeMap;
 use armgen_description::language::Language;
 
 use super::plain::{
-    is_of_some_arms, names_of, promised, sizes, Body, Comments, Constants, Functions, Lines, Parts, Syntax, CONSTANTS,
+    in_order, is_of_some_arms, names_of, promised, sizes, Body, Comments, Constants, Functions, Lines, Parts, Syntax, CONSTANTS,
 };
 use super::{Constant, Fault, Function, Module};
-use crate::contract::{Length, Promise, Returned, Sizes};
+use crate::contract::{of_tip, Length, Promise, Returned, Sizes};
 use crate::enclosure::Float;
 
 pub(super) const COMMENTS: Comments = Comments { line: Some("#"), block: Some(("    \"\"\"", "\"\"\"")), behind: ":" };
@@ -79,16 +79,17 @@ pub(super) fn read(text: &str) -> Result<Module, Fault> {
         truth: ["False", "True"],
         infinity: "float(\"inf\")",
     };
-    let mut constants: BTreeMap<String, Constant> = BTreeMap::new();
-    for (name, ..) in CONSTANTS {
+    let read = in_order(CONSTANTS.map(|(name, ..)| name), |name| {
         let begin = format!("{name}: Final = ");
         if is_of_some_arms(name) && !lines.peek().starts_with(&begin) {
-            continue;
+            return Ok(None);
         }
         let number = lines.number();
         let value = lines.between(&begin, "")?;
-        constants.insert(name.into(), form.read(name, value, number)?);
-    }
+        form.read(name, value, number).map(Some)
+    })?;
+    let order: Vec<String> = read.iter().map(|(name, _)| name.clone()).collect();
+    let constants: BTreeMap<String, Constant> = read.into_iter().collect();
     let sizes = sizes(&constants)?;
     lines.at += 1;
     lines.expect_all(ARRAYS, COMMENTS)?;
@@ -126,8 +127,7 @@ pub(super) fn read(text: &str) -> Result<Module, Fault> {
         Reader { syntax: &syntax, real, sizes, parts: Parts::default(), structures: Vec::new(), steps: 0, asks: [false; 3] };
     let functions = reader.all(&mut lines, "", [trig.is_some(), sign, stribeck])?;
     let named = constants.len() + 1;
-    let own = CONSTANTS.iter().map(|(name, ..)| (*name).to_string()).filter(|name| constants.contains_key(name));
-    let mut wanted: Vec<String> = own.chain(["DTYPE".into(), "by_joint".into()]).collect();
+    let mut wanted: Vec<String> = order.into_iter().chain(["DTYPE".into(), "by_joint".into()]).collect();
     wanted.extend(reader.structures.iter().cloned());
     wanted.extend(functions.iter().map(|(name, _)| name.clone()));
     if public != wanted {
@@ -168,6 +168,7 @@ impl<'a> Functions<'a> for Reader<'a, '_> {
         }
         let line = lines.number();
         let name = lines.peek().strip_prefix("def ").and_then(|rest| rest.split('(').next()).unwrap_or_default();
+        self.sizes = self.sizes.of_function(name);
         let known = promised(name, &self.sizes);
         let (promise, arguments) =
             known.ok_or_else(|| Fault { line, reason: format!("`{name}` is not a function that an emitted module has") })?;
@@ -239,7 +240,7 @@ impl<'a> Reader<'a, '_> {
         lengths: &'static [Length],
         access: &str,
     ) -> Result<(), Fault> {
-        let dimensions: Vec<String> = lengths.iter().map(|length| length.rust()).collect();
+        let dimensions: Vec<String> = lengths.iter().map(|length| of_tip(&body.program.name, &length.rust())).collect();
         lines.expect(&format!("{begin}_leave(xp, {like}, shape, {}, (", tuple(&dimensions)))?;
         for place in Returned::One(lengths).places(&self.sizes) {
             let line = lines.number();
@@ -252,7 +253,7 @@ impl<'a> Reader<'a, '_> {
     /// A type for several results.
     fn class(&mut self, lines: &mut Lines<'a>) -> Result<(), Fault> {
         let name = lines.between("class ", "(NamedTuple):")?;
-        let promise = names_of()
+        let promise = names_of(&self.sizes)
             .filter_map(|own| promised(&own, &self.sizes))
             .find(|(promise, _)| structure(promise).as_deref() == Some(name));
         let (promise, _) = promise.ok_or_else(|| lines.fault(format!("`{name}` is no type of results")))?;

@@ -68,7 +68,8 @@ pub(crate) fn c(folder: &Path, robot: &Robot, generated: &Generated, effort: Eff
         let mut at = 0;
         let number = function.results.len() == 1 && function.results[0].1.is_empty();
         for (_, array, entries) in function.results.iter().filter(|_| !number) {
-            let inner: String = array.iter().skip(1).map(|length| format!("[{}]", robot.dimension(*length))).collect();
+            let inner: String =
+                array.iter().skip(1).map(|length| format!("[{}]", robot.dimension(&function.name, *length))).collect();
             let pointer = if inner.is_empty() { "real *".into() } else { format!("real (*){inner}") };
             arguments.push(format!("({pointer})(r + {at})"));
             at += entries;

@@ -59,7 +59,7 @@ impl Robot {
                 Argument::Tau => of_joints(5),
                 Argument::Gravity => parameters + 6 * dof..parameters + 6 * dof + 3,
             };
-            let places = promise.returned.places(&sizes);
+            let places = promise.returned.places(&sizes.of_function(name));
             let entries = |part: &str| places.iter().filter(|place| promise.returned.part_of(place).0 == part).count();
             Called {
                 name: name.into(),
@@ -72,7 +72,14 @@ impl Robot {
                     .collect(),
             }
         };
-        Robot { name: name.clone(), scalar, dof, parameters, sizes, functions: module.programs().map(called).collect() }
+        Robot {
+            name: name.clone(),
+            scalar,
+            dof,
+            parameters,
+            sizes: sizes.clone(),
+            functions: module.programs().map(called).collect(),
+        }
     }
 
     /// States with positions of all sizes, including exact multiples of pi/2 and zeros of both signs.
@@ -108,12 +115,13 @@ impl Robot {
         self.parameters + 6 * self.dof + 3
     }
 
-    pub(crate) fn dimension(&self, length: Length) -> usize {
+    /// A dimension of a result of a function.
+    pub(crate) fn dimension(&self, function: &str, length: Length) -> usize {
         match length {
             Length::Dof => self.sizes.n,
             Length::Parameters => self.sizes.p,
             Length::BaseParameters => self.sizes.b,
-            Length::Task => self.sizes.m,
+            Length::Task => self.sizes.of_function(function).m,
             Length::Of(value) => value,
         }
     }

@@ -137,12 +137,12 @@ impl Sum {
 }
 
 fn links<const N: usize>(manipulator: &Manipulator, value: &dyn Fn(&Polynomial) -> f64) -> [LinkBound<f64>; N] {
-    let joints = &manipulator.joints;
+    let (joints, loads) = (&manipulator.joints, manipulator.loads());
     let mut sums = [Sum::default(); N];
     for (i, joint) in joints.iter().enumerate() {
         let (rotation, origin) = frame(&joint.link_frame, value);
-        let payload = manipulator.payload.iter().filter(|_| manipulator.tip.0 as usize == i);
-        let bodies = joint.link.iter().map(|body| (body, None)).chain(payload.map(|body| (body, Some(&manipulator.tool.frame))));
+        let loads = loads.iter().filter(|load| load.link == i).map(|load| (load.body, Some(&load.tool.frame)));
+        let bodies = joint.link.iter().map(|body| (body, None)).chain(loads);
         for (placed, tool) in bodies {
             let body = &placed.body;
             let [xx, xy, yy, xz, yz, zz] = std::array::from_fn(|k| value(&body.inertia[k]));
@@ -156,7 +156,7 @@ fn links<const N: usize>(manipulator: &Manipulator, value: &dyn Fn(&Polynomial) 
             sums[i].add(value(&body.mass), rotation * com + origin, rotation * inertia * rotation.transpose());
         }
         if let (Some(motor), Some(parent)) = (&joint.motor, joint.parent) {
-            let p = parent.0 as usize;
+            let p = parent.index();
             let (rotation, origin) = frame(&joints[p].link_frame, value);
             let place = Vector3::from_fn(|k, _| value(&motor.position[k]));
             let axis = rotation * Vector3::from_fn(|k, _| motor.axis[k].to_f64());
@@ -180,7 +180,7 @@ fn links<const N: usize>(manipulator: &Manipulator, value: &dyn Fn(&Polynomial) 
         let (ratio, spin) =
             joint.motor.as_ref().map_or((0.0, 0.0), |motor| (value(&motor.ratio), motor.inertia.as_ref().map_or(0.0, value)));
         LinkBound {
-            parent: joint.parent.map(|parent| parent.0 as usize),
+            parent: joint.parent.map(|parent| parent.index()),
             slides: joint.kind == JointKind::Prismatic,
             distance: frame(&joint.placement, value).1.norm() * UPWARDS,
             mass: sums[i].mass * UPWARDS,

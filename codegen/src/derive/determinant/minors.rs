@@ -132,7 +132,7 @@ fn without_each(pool: &mut Pool, matrix: &[Vec<ExprId>]) -> Vec<ExprId> {
 
 /// The twist of the end effector for each rate, about the origin and in the axes of the joint frame in the middle of the arm: six rows.
 fn twists(pool: &mut Pool, arm: &Arm) -> Vec<Vec<ExprId>> {
-    let path = arm.path_to(arm.tip);
+    let path = arm.path_to(arm.tool.link);
     let middle = path.len() / 2;
     let mut rows = vec![vec![ExprId::ZERO; arm.dof()]; 6];
     let mut set = |pool: &mut Pool, i: usize, axis: &Vector, origin: &Vector| {

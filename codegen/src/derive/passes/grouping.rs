@@ -117,8 +117,8 @@ fn choose_origin(pool: &mut Pool, arm: &mut Arm, plan: &mut Plan, i: usize, end_
         }
     }
     // Data sheets differ in whether the last link or the tool reaches to the flange.
-    if end_effector_counts && arm.tip == i {
-        shifts.push(arm.tool_origin[2]);
+    if end_effector_counts && arm.tool.link == i {
+        shifts.push(arm.tool.origin[2]);
     }
     let mut ways: Vec<ExprId> = Vec::new();
     for shift in shifts {

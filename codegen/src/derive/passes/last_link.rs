@@ -29,7 +29,7 @@ fn quarters(pool: &mut Pool, sine: ExprId, joint: u16) -> Option<usize> {
 
 /// The last link of a chain, if it turns and carries none.
 fn last(arm: &Arm) -> Option<usize> {
-    let i = arm.tip;
+    let i = arm.tool.link;
     let alone = arm.joints[i].is_revolute() && arm.joints.iter().all(|joint| joint.parent != Some(i));
     alone.then_some(i)
 }
@@ -59,7 +59,7 @@ pub(crate) fn angle_of_last_link(field: &Field, manipulator: &Manipulator) -> Op
 
 /// Rotates the axes of the last link, or leaves them.
 pub(super) fn rotate(pool: &mut Pool, arm: &mut Arm, plan: &mut Plan) {
-    if pool.field().turn().is_some() && plan.way(Pass::LastLinkRotation, Place::Joint(arm.tip), 2) == 1 {
+    if pool.field().turn().is_some() && plan.way(Pass::LastLinkRotation, Place::Joint(arm.tool.link), 2) == 1 {
         rotate_last_link(pool, arm);
     }
 }
@@ -80,8 +80,10 @@ pub(crate) fn rotate_last_link(pool: &mut Pool, arm: &mut Arm) {
     joint.link_origin = pool.transform(&back, &joint.link_origin);
     joint.own_axes = pool.product(&back, &joint.own_axes);
     joint.own_origin = pool.transform(&back, &joint.own_origin);
-    arm.tool_rotation = pool.product(&back, &arm.tool_rotation);
-    arm.tool_origin = pool.transform(&back, &arm.tool_origin);
+    for tool in arm.tools_of(i) {
+        tool.rotation = pool.product(&back, &tool.rotation);
+        tool.origin = pool.transform(&back, &tool.origin);
+    }
 }
 
 #[cfg(test)]

@@ -130,9 +130,9 @@ fn orient(pool: &mut Pool, arm: &mut Arm, run: &[usize], reference: usize, sums:
         let about_z = link.about_axis_matrix();
         joint.link_rotation = pool.product(&about_z, &link.link_rotation);
         joint.own_axes = pool.product(&about_z, &link.own_axes);
-        if arm.tip == i {
-            arm.tool_origin = link.about_axis(pool, &arm.tool_origin);
-            arm.tool_rotation = pool.product(&about_z, &arm.tool_rotation);
+        for tool in arm.tools_of(i) {
+            tool.origin = link.about_axis(pool, &tool.origin);
+            tool.rotation = pool.product(&about_z, &tool.rotation);
         }
         let next = run[k + 1];
         arm.joints[next].origin = link.about_axis(pool, &arm.joints[next].origin);

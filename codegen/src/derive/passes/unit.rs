@@ -34,6 +34,8 @@ pub(super) fn unit_of_length(pool: &mut Pool, arm: &mut Arm, plan: &mut Plan) {
         joint.body.first = pool.scale(unit, &joint.body.first);
     }
     arm.gravity = pool.scale(inverse, &arm.gravity);
-    arm.tool_origin = pool.scale(inverse, &arm.tool_origin);
+    for tool in std::iter::once(&mut arm.tool).chain(&mut arm.loads) {
+        tool.origin = pool.scale(inverse, &tool.origin);
+    }
     arm.base_moment = pool.scale(unit, &arm.base_moment);
 }

@@ -9,7 +9,7 @@
 use crate::derive::arm::Arm;
 use crate::derive::passes::RewriteScope;
 use crate::derive::plan::Start;
-use crate::derive::quantity::{Argument, Documentation, Element, Length, Quantity, Recursion, ResultPart, Typeset};
+use crate::derive::quantity::{Argument, Documentation, Element, Length, Of, Quantity, Recursion, ResultPart, Typeset};
 use crate::ring::matrix::{Matrix, Vector, IDENTITY, ZERO};
 use crate::ring::{ExprId, Pool, Symbol};
 
@@ -35,7 +35,7 @@ pub static DIRECT_KINEMATICS: Quantity = Quantity {
         "the 4 x 4 homogeneous transformation `t[row][column]`: the columns of the rotation are the axes of the end-effector frame in the base \
          frame, the last column is its origin in m.",
     ),
-    recursion: Recursion { starts: &STARTS, ..Recursion::new(RewriteScope::Frames, |pool, arm, _, _| direct_kinematics(pool, arm).concat()) },
+    recursion: Recursion { starts: &STARTS, of: Of::EndEffector, ..Recursion::new(RewriteScope::Frames, |pool, arm, _, _| direct_kinematics(pool, arm).concat()) },
     missing: Quantity::NEVER_MISSING,
     gathers: &[],
     interface: Some("Kinematics"),
@@ -84,6 +84,7 @@ pub static GEOMETRIC_JACOBIAN: Quantity = Quantity {
     ),
     recursion: Recursion {
         starts: &STARTS,
+        of: Of::EndEffector,
         ..Recursion::new(RewriteScope::Frames, |pool, arm, _, _| geometric_jacobian(pool, arm).concat())
     },
     missing: Quantity::NEVER_MISSING,
@@ -111,6 +112,7 @@ pub static GEOMETRIC_JACOBIAN_DOT: Quantity = Quantity {
     ),
     recursion: Recursion {
         starts: &STARTS,
+        of: Of::EndEffector,
         ..Recursion::new(RewriteScope::Frames, |pool, arm, _, _| geometric_jacobian_dot(pool, arm).concat())
     },
     missing: Quantity::NEVER_MISSING,
@@ -181,7 +183,7 @@ fn homogeneous((rotation, origin): &(Matrix, Vector)) -> Vec<Vec<ExprId>> {
 /// T_e(q).
 pub fn direct_kinematics(pool: &mut Pool, arm: &Arm) -> Vec<Vec<ExprId>> {
     let frames = frames(pool, arm);
-    homogeneous(&fixed_in(pool, &frames.joints[arm.tip], &arm.tool_rotation, &arm.tool_origin))
+    homogeneous(&fixed_in(pool, &frames.joints[arm.tool.link], &arm.tool.rotation, &arm.tool.origin))
 }
 
 /// T_i(q) of every link frame.
@@ -202,7 +204,7 @@ fn z(frame: &(Matrix, Vector)) -> Vector {
 /// J(q): six rows, linear then angular.
 pub fn geometric_jacobian(pool: &mut Pool, arm: &Arm) -> Vec<Vec<ExprId>> {
     let frames = frames(pool, arm);
-    jacobian_of_point(pool, arm, &frames, arm.tip, &arm.tool_origin)
+    jacobian_of_point(pool, arm, &frames, arm.tool.link, &arm.tool.origin)
 }
 
 /// The geometric Jacobian of a point fixed in joint frame `link`: six rows, linear then angular.
@@ -241,9 +243,9 @@ fn set_column(jacobian: &mut [Vec<ExprId>], column: usize, linear: &Vector, angu
 pub fn geometric_jacobian_dot(pool: &mut Pool, arm: &Arm) -> Vec<Vec<ExprId>> {
     let frames = frames(pool, arm);
     let rates = arm.symbols(pool, Symbol::Rate);
-    let path = arm.path_to(arm.tip);
-    let shift = pool.transform(&frames.joints[arm.tip].0, &arm.tool_origin);
-    let end = pool.add_vectors(&frames.joints[arm.tip].1, &shift);
+    let path = arm.path_to(arm.tool.link);
+    let shift = pool.transform(&frames.joints[arm.tool.link].0, &arm.tool.origin);
+    let end = pool.add_vectors(&frames.joints[arm.tool.link].1, &shift);
     // Angular velocity of each link on the path and rate of each axis, from the base; linear velocity of the end effector relative to each joint's
     // origin, from the tip down.
     let (mut omega, mut axis_rates) = (vec![ZERO; arm.dof()], vec![ZERO; arm.dof()]);

@@ -16,7 +16,7 @@ use crate::derive::model::Model;
 use crate::derive::parameters::View;
 use crate::derive::passes::RewriteScope;
 use crate::derive::plan::Plan;
-use crate::derive::quantity::{Argument, Documentation, Length, Quantity, Recursion, ResultPart, Typeset};
+use crate::derive::quantity::{Argument, Documentation, Length, Of, Quantity, Recursion, ResultPart, Typeset};
 use crate::pass::Pass;
 use crate::ring::field::{Element, Field};
 use crate::ring::{ExprId, Pool};
@@ -36,7 +36,7 @@ pub static OPERATIONAL_INERTIA: Quantity = Quantity {
          configuration it is infinite, and its entries are not finite or, by rounding, very large.",
     ) },
     recursion: Recursion { // The Jacobian wants the lengths of the description.
-        without: &[Pass::UnitOfLength], ..Recursion::new(RewriteScope::Dynamics, |pool, arm, plan, input| {
+        without: &[Pass::UnitOfLength], of: Of::EndEffector, ..Recursion::new(RewriteScope::Dynamics, |pool, arm, plan, input| {
             operational_inertia(pool, arm, plan, &input.model.manipulator.task_rows()).concat()
         }) },
     missing,

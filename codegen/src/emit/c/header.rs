@@ -69,6 +69,10 @@ const OF_RUST: &str = "/*\n * The functions are those of the module in Rust, wit
 pub(super) const POINTERS: &str =
     "\n/* Arrays are by rows. A result may lie where arguments do, but not where another result does. */\n";
 
+/// Documentation of the rows of a task.
+const TASK: &str =
+    "Rows of the geometric Jacobian in the operational space: 0 1 2 velocity along, 3 4 5 angular velocity about x y z.";
+
 /// The name, the scalar and the other macros.
 pub(super) fn macros(module: &Module) -> String {
     let name = prefix(module);
@@ -98,22 +102,30 @@ pub(super) fn macros(module: &Module) -> String {
         "/* Name of the robot, and whether each joint turns (q in rad) or slides (q in m). */\n\
          #define {upper}_NAME \"{}\"\n#define {upper}_JOINT_IS_REVOLUTE {}\n\n\
          /* The scalar of all functions. */\ntypedef {real} {name}_real;\n\n\
-         /* Number of joints, of parameters, and of rows of the operational space. */\n\
-         #define {upper}_DOF {}\n#define {upper}_PARAMETERS {}\n#define {upper}_TASK_ROWS {}\n\n",
+         /* Number of joints, of parameters{}. */\n\
+         #define {upper}_DOF {}\n#define {upper}_PARAMETERS {}\n",
         module.name,
         braces(revolute.collect()),
+        if module.tips.is_empty() { ", and of rows of the operational space" } else { "" },
         module.joints.len(),
         module.parameters.len(),
-        module.task.len(),
     );
-    if !module.task.is_empty() {
-        let rows = module.task.iter().map(ToString::to_string).collect();
-        let _ = writeln!(
-            text,
-            "/* Rows of the geometric Jacobian in the operational space: 0 1 2 velocity along, 3 4 5 angular velocity about x y z. */\n\
-             #define {upper}_TASK {}\n",
-            braces(rows)
-        );
+    let counted = |all: &[usize]| braces(all.iter().map(ToString::to_string).collect());
+    if module.tips.is_empty() {
+        let _ = writeln!(text, "#define {upper}_TASK_ROWS {}\n", module.task.len());
+        if !module.task.is_empty() {
+            let _ = writeln!(text, "/* {TASK} */\n#define {upper}_TASK {}\n", counted(&module.task));
+        }
+    } else {
+        let names = module.tips.iter().map(|tip| format!("\"{}\"", tip.name)).collect();
+        let _ = writeln!(text, "\n/* Names of the end effectors. */\n#define {upper}_TIPS {}\n", braces(names));
+        let _ = writeln!(text, "/* Of each end effector the number of rows of its operational space, and the joints that move it, from 0.\n * {TASK} */");
+        for tip in &module.tips {
+            let [rows, task, coordinates] = ["TASK_ROWS", "TASK", "COORDINATES"].map(|name| tip.constant(name));
+            let _ = writeln!(text, "#define {upper}_{rows} {}\n#define {upper}_{task} {}", tip.task.len(), counted(&tip.task));
+            let _ = writeln!(text, "#define {upper}_{coordinates} {}", counted(&tip.coordinates));
+        }
+        text += "\n";
     }
     text += "/* Initialisers of arrays. Limits are rad or m, per s, s² and s³, N m or N; infinite (math.h) where the description gives none. */\n";
     let _ = writeln!(text, "#define {upper}_JOINT_NAMES {}", braces(module.joints.iter().map(joint).collect()));

@@ -1,13 +1,13 @@
 //! The implementation of the runtime's traits for an emitted module: text that names `armgen_runtime` and `nalgebra`, and nothing of either here.
 
-use proc_macro2::TokenStream;
+use proc_macro2::{Ident, TokenStream};
 use quote::{format_ident, quote, ToTokens};
 
 use super::documentation;
 use super::signature::{accesses, argument, length, of_parts, usize_literal, with_fields};
-use crate::catalogue::{self, Argument, Length, Quantity, ResultPart};
+use crate::catalogue::{self, Argument, Length, Of, Quantity, ResultPart};
 use crate::emit::documentation as common;
-use crate::program::Module;
+use crate::program::{EndEffector, Module};
 
 /// Two robots that call the functions of the module, in scope by `use super::*` or in the same module. `Nominal` is the robot of
 /// the description, `WithParameters` the same robot with parameters chosen at run time.
@@ -17,21 +17,52 @@ pub(super) fn implementation(module: &Module) -> Option<TokenStream> {
     if !is_implemented(module, "Kinematics") {
         return None;
     }
-    let doc = format!(" The robot `{}` as described.", module.name);
     let has_dynamics = is_implemented(module, "Dynamics");
     let mounted = (has_dynamics && module.gravity_is_argument).then_some(&MOUNTED);
     let others: Vec<&Robot> = mounted.into_iter().chain(has_dynamics.then_some(&WITH_PARAMETERS)).collect();
-    let types = others.iter().map(|robot| type_of_robot(module, robot));
-    let traits = [&NOMINAL].into_iter().chain(others.iter().copied()).map(|robot| traits(module, robot));
-    Some(quote! {
-        #[doc = #doc]
-        #[allow(dead_code)]
-        #[derive(Clone, Copy, Debug, Default, PartialEq)]
-        pub struct Nominal;
+    let ends: Vec<Option<&EndEffector>> = match module.tips.as_slice() {
+        [] => vec![None],
+        tips => tips.iter().map(Some).collect(),
+    };
+    let all = ends.into_iter().map(|end| {
+        let doc = match end {
+            None => format!(" The robot `{}` as described.", module.name),
+            Some(tip) => format!(" The robot `{}` as described, with the end effector `{}`.", module.name, tip.name),
+        };
+        let name = NOMINAL.name_with(end);
+        let types = others.iter().map(|robot| type_of_robot(module, robot, end));
+        let traits = [&NOMINAL].into_iter().chain(others.iter().copied()).map(|robot| traits(module, robot, end));
+        quote! {
+            #[doc = #doc]
+            #[allow(dead_code)]
+            #[derive(Clone, Copy, Debug, Default, PartialEq)]
+            pub struct #name;
 
-        #(#types)*
-        #(#traits)*
-    })
+            #(#types)*
+            #(#traits)*
+        }
+    });
+    Some(quote!(#(#all)*))
+}
+
+impl Robot {
+    /// Its name: of an end effector `left` `Left` in place of `Nominal`, and `LeftWithParameters`.
+    fn name_with(&self, end: Option<&EndEffector>) -> Ident {
+        let capital = |word: &str| {
+            let (initial, rest) = word.split_at(word.len().min(1));
+            initial.to_uppercase() + rest
+        };
+        let tip = end.map(|tip| tip.name.split('_').map(capital).collect::<String>());
+        let own = if tip.is_some() && self.name == NOMINAL.name { "" } else { self.name };
+        format_ident!("{}{own}", tip.unwrap_or_default())
+    }
+}
+
+/// The quantity of an end effector, or the same one where it is of the robot.
+fn of_end(module: &Module, quantity: &'static Quantity, end: Option<&EndEffector>) -> Option<&'static Quantity> {
+    let Some(tip) = end.filter(|_| quantity.recursion.of == Of::EndEffector) else { return Some(quantity) };
+    let name = format!("{}_{}", tip.name.to_ascii_lowercase(), quantity.name);
+    module.functions.iter().map(|function| function.quantity).find(|quantity| quantity.name == name)
 }
 
 /// A robot that implements the traits, and the values that it has in fields instead of taking them from the description.
@@ -61,8 +92,8 @@ const WITH_PARAMETERS: Robot = Robot {
     gravity: true,
 };
 
-fn type_of_robot(module: &Module, robot: &Robot) -> TokenStream {
-    let (name, title, default) = (format_ident!("{}", robot.name), robot.title, robot.default);
+fn type_of_robot(module: &Module, robot: &Robot, end: Option<&EndEffector>) -> TokenStream {
+    let (name, title, default) = (robot.name_with(end), robot.title, robot.default);
     let parameters = robot.parameters.then(|| {
         quote! {
             /// The parameter vector.
@@ -109,8 +140,13 @@ fn single() -> impl Iterator<Item = (&'static Quantity, &'static str)> {
     catalogue::quantities().filter_map(|quantity| Some((quantity, quantity.interface.filter(|name| !BASIC.contains(name))?)))
 }
 
-fn has(module: &Module, quantity: &Quantity, with_parameters: bool) -> bool {
-    module.functions.iter().any(|f| (f.quantity, f.with_parameters) == (quantity, with_parameters))
+/// Whether a module has a function, of each end effector where these have names.
+fn has(module: &Module, quantity: &'static Quantity, with_parameters: bool) -> bool {
+    let there = |quantity| module.functions.iter().any(|f| (f.quantity, f.with_parameters) == (quantity, with_parameters));
+    match module.tips.as_slice() {
+        [] => there(quantity),
+        tips => tips.iter().all(|tip| of_end(module, quantity, Some(tip)).is_some_and(there)),
+    }
 }
 
 /// Basic traits that have functions which the module does not have, and these.
@@ -131,13 +167,13 @@ pub(super) fn is_implemented(module: &Module, interface: &str) -> bool {
     needed.into_iter().all(|name| lacking.iter().all(|(other, _)| *other != name))
 }
 
-fn traits(module: &Module, robot: &Robot) -> TokenStream {
-    let (name, with_parameters) = (format_ident!("{}", robot.name), robot.parameters);
+fn traits(module: &Module, robot: &Robot, end: Option<&EndEffector>) -> TokenStream {
+    let (name, with_parameters) = (robot.name_with(end), robot.parameters);
     let parameters = if with_parameters { quote!(self.parameters) } else { quote!(NOMINAL_PARAMETERS) };
     let basic = BASIC.into_iter().filter(|interface| is_implemented(module, interface)).map(|interface| {
         // The others have a default in their trait.
-        let there = |quantity: &&Quantity| quantity.documentation.said_missing || has(module, quantity, with_parameters);
-        let methods = methods(interface).filter(there).map(|quantity| method(module, quantity, robot));
+        let there = |quantity: &&'static Quantity| quantity.documentation.said_missing || has(module, quantity, with_parameters);
+        let methods = methods(interface).filter(there).map(|quantity| method(module, quantity, robot, end));
         let (lengths, first, last) = match interface {
             "Kinematics" => (
                 quote!(DOF),
@@ -171,8 +207,9 @@ fn traits(module: &Module, robot: &Robot) -> TokenStream {
     let single = single().filter(|(quantity, _)| answers(quantity));
     let single = single.filter(|(quantity, _)| has(module, quantity, with_parameters && quantity.has_parameters));
     let single = single.map(|(quantity, interface)| {
-        let (interface, method) = (format_ident!("{interface}"), method(module, quantity, robot));
-        let lengths = constants(quantity).into_iter().map(length);
+        let (interface, method) = (format_ident!("{interface}"), method(module, quantity, robot, end));
+        let own = of_end(module, quantity, end).unwrap_or(quantity);
+        let lengths = constants(own).into_iter().map(length);
         quote! {
             impl armgen_runtime::robot::#interface<#(#lengths),*> for #name {
                 #method
@@ -204,7 +241,7 @@ fn generic(length: Length) -> TokenStream {
         Length::Parameters => quote!(P),
         Length::BaseParameters => quote!(B),
         Length::Task => quote!(M),
-        Length::Fixed(value) => usize_literal(value).into_token_stream(),
+        Length::Fixed(value) | Length::Named(_, value) => usize_literal(value).into_token_stream(),
     }
 }
 
@@ -238,8 +275,9 @@ pub fn single_traits() -> String {
         + &super::format(traits)
 }
 
-fn method(module: &Module, quantity: &Quantity, robot: &Robot) -> TokenStream {
+fn method(module: &Module, quantity: &'static Quantity, robot: &Robot, end: Option<&EndEffector>) -> TokenStream {
     let name = format_ident!("{}", quantity.name);
+    let quantity = of_end(module, quantity, end).unwrap_or(quantity);
     let run_time = robot.parameters && quantity.has_parameters;
     let called = format_ident!("{}", quantity.function_name(run_time));
     let arguments = quantity.arguments_of(false, false).map(|a| {

@@ -32,7 +32,7 @@ pub(in crate::validate) fn check_holding(description: &RobotDescription, arm: &M
             continue;
         }
         let unit = if joint.kind == JointKind::Revolute { "N m" } else { "N" };
-        let carried = if arm.payload.is_some() { "the arm with its payload" } else { "the arm" };
+        let carried = if !arm.loads().is_empty() { "the arm with its payload" } else { "the arm" };
         let message = format!(
             "joint {} cannot hold {carried}: gravity asks up to {} {unit} of it, and its effort limit is {} {unit}",
             call(i, described),
@@ -117,7 +117,7 @@ fn most_asked(arm: &Manipulator) -> Vec<f64> {
             (Frame::of(arm, &joint.row.before.frame), axis, Frame::of(arm, &joint.row.after.frame))
         })
         .collect();
-    // The load of each link, in its frame: bodies, and the rotors of the joints after it; the payload on the last one.
+    // The load of each link, in its frame: bodies, and the rotors of the joints after it; payloads on those of their end effectors.
     let mut carried: Vec<Vec<(f64, Vector)>> = arm
         .joints
         .iter()
@@ -127,13 +127,13 @@ fn most_asked(arm: &Manipulator) -> Vec<f64> {
         .collect();
     for joint in &arm.joints {
         if let (Some(motor), Some(parent)) = (&joint.motor, joint.parent) {
-            carried[parent.0 as usize].push((value(arm, &motor.mass), motor.position.each_ref().map(|x| value(arm, x))));
+            carried[parent.index()].push((value(arm, &motor.mass), motor.position.each_ref().map(|x| value(arm, x))));
         }
     }
-    if let Some(payload) = &arm.payload {
-        let tool = Frame::of(arm, &arm.tool.frame);
-        let com = tool.point(&payload.body.com.each_ref().map(|x| value(arm, x)));
-        carried[arm.tip.0 as usize].push((value(arm, &payload.body.mass), com));
+    for load in arm.loads() {
+        let tool = Frame::of(arm, &load.tool.frame);
+        let com = tool.point(&load.body.body.com.each_ref().map(|x| value(arm, x)));
+        carried[load.link].push((value(arm, &load.body.body.mass), com));
     }
     let limits: Vec<[f64; 2]> = arm
         .joints
@@ -151,7 +151,7 @@ fn most_asked(arm: &Manipulator) -> Vec<f64> {
         let (mut links, mut axes) = (Vec::<Frame>::new(), Vec::new());
         for (i, joint) in arm.joints.iter().enumerate() {
             let (before, axis, after) = &steps[i];
-            let before = joint.parent.map_or(Frame::BASE, |link| links[link.0 as usize]).then(before);
+            let before = joint.parent.map_or(Frame::BASE, |link| links[link.index()]).then(before);
             axes.push((before.direction(axis), before.at));
             let q = limits[i][0] + part(i) * (limits[i][1] - limits[i][0]);
             links.push(before.then(&motion(joint.kind, axis, q)).then(after));
@@ -175,5 +175,5 @@ fn most_asked(arm: &Manipulator) -> Vec<f64> {
 
 /// Whether joint `i` moves `link`.
 fn is_moved_by(arm: &Manipulator, link: usize, i: usize) -> bool {
-    std::iter::successors(Some(link), |&link| arm.joints[link].parent.map(|parent| parent.0 as usize)).any(|link| link == i)
+    std::iter::successors(Some(link), |&link| arm.joints[link].parent.map(|parent| parent.index())).any(|link| link == i)
 }

@@ -1,7 +1,7 @@
 //! Reads the kernels of a module in CUDA: their texts follow from the signatures of the functions.
 
 use super::{Lines, Robot, COMMENTS};
-use crate::contract::{Array, Length, Returned, Sizes};
+use crate::contract::{of_tip, Array, Length, Returned, Sizes};
 use crate::reader::lexer::Fault;
 use crate::reader::plain::promised;
 
@@ -17,7 +17,7 @@ pub(super) fn read<'n>(
     lines.expect_all(&robot.own(KERNELS), COMMENTS)?;
     for name in functions {
         if let Some(text) = kernel(robot, sizes, name) {
-            lines.expect_all(&text, COMMENTS)?;
+            lines.expect_all(&of_tip(name, &text), COMMENTS)?;
         }
     }
     lines.expect("#endif")
@@ -25,6 +25,7 @@ pub(super) fn read<'n>(
 
 /// The kernel of a function and its launch; nothing where an array has no entries.
 fn kernel(robot: &Robot, sizes: &Sizes, name: &str) -> Option<String> {
+    let sizes = &sizes.of_function(name);
     let (promise, arguments) = promised(name, sizes)?;
     let results = promise.returned.named();
     let entries = |array: Array| array.iter().map(|length| length.of(sizes)).product::<usize>();

@@ -5,9 +5,10 @@ use std::collections::BTreeMap;
 use super::place::Place;
 use crate::contract::Sizes;
 use crate::enclosure::Float;
-use crate::program::NOMINAL_GRAVITY;
+use crate::program::{NOMINAL_GRAVITY, TIPS};
 use crate::reader::constant::Constant;
 use crate::reader::lexer::Fault;
+use crate::reader::{constant_of, tips_of, OF_TIP};
 
 /// Maximum number of entries in an array of constants.
 const MOST_ENTRIES: usize = 4096;
@@ -38,7 +39,7 @@ pub(in crate::reader) enum Entry {
 }
 
 /// The permitted constants: name, kind of entries, and nesting depth of arrays.
-pub(in crate::reader) const CONSTANTS: [(&str, Entry, usize); 18] = [
+pub(in crate::reader) const CONSTANTS: [(&str, Entry, usize); 19] = [
     ("NAME", Entry::Text, 0),
     ("DOF", Entry::Integer, 0),
     ("JOINT_NAMES", Entry::Text, 1),
@@ -50,6 +51,7 @@ pub(in crate::reader) const CONSTANTS: [(&str, Entry, usize); 18] = [
     ("JERK_LIMITS", Entry::Real, 1),
     ("TASK_ROWS", Entry::Integer, 0),
     ("TASK", Entry::Integer, 1),
+    (TIPS, Entry::Text, 1),
     ("PARAMETERS", Entry::Integer, 0),
     ("PARAMETER_NAMES", Entry::Text, 1),
     ("NOMINAL_PARAMETERS", Entry::Real, 1),
@@ -61,16 +63,48 @@ pub(in crate::reader) const CONSTANTS: [(&str, Entry, usize); 18] = [
 
 /// Whether only the modules of some arms have a constant.
 pub(in crate::reader) fn is_of_some_arms(name: &str) -> bool {
-    name == NOMINAL_GRAVITY || name.contains("BASE_")
+    [NOMINAL_GRAVITY, TIPS, "TASK_ROWS", "TASK"].contains(&name) || name.contains("BASE_")
+}
+
+/// The kind of a constant's entries, and the nesting depth of its arrays.
+fn kind_of(name: &str) -> Option<(Entry, usize)> {
+    let known = CONSTANTS.iter().find(|(known, ..)| *known == name).map(|(_, entry, depth)| (*entry, *depth));
+    let of_tip = || OF_TIP.iter().find(|own| name.strip_suffix(**own).is_some_and(|tip| tip.len() > 1 && tip.ends_with('_')));
+    known.or_else(|| Some((Entry::Integer, usize::from(*of_tip()? != "TASK_ROWS"))))
+}
+
+/// The constants that follow another one: those of the end effectors that it names.
+fn behind(name: &str, value: &Constant) -> Vec<String> {
+    let of_tips = BTreeMap::from([(name.to_owned(), value.clone())]);
+    tips_of(&of_tips).iter().flat_map(|tip| OF_TIP.map(|own| constant_of(tip, own))).collect()
+}
+
+/// Reads all constants in their order, by a function that reads a constant; it returns none for a constant that only some arms have.
+pub(in crate::reader) fn in_order(
+    names: impl IntoIterator<Item = &'static str>,
+    mut read: impl FnMut(&str) -> Result<Option<Constant>, Fault>,
+) -> Result<Vec<(String, Constant)>, Fault> {
+    let mut constants = Vec::new();
+    for name in names {
+        let mut all = vec![name.to_owned()];
+        let mut at = 0;
+        while let Some(name) = all.get(at).cloned() {
+            at += 1;
+            if let Some(value) = read(&name)? {
+                all.extend(behind(&name, &value));
+                constants.push((name, value));
+            }
+        }
+    }
+    Ok(constants)
 }
 
 impl Constants {
     /// Reads the value of a constant.
     pub(in crate::reader) fn read(&self, name: &str, text: &str, line: usize) -> Result<Constant, Fault> {
         let mut place = Place { rest: text, line };
-        let known = CONSTANTS.iter().find(|(known, ..)| *known == name);
-        let (_, entry, depth) = known.ok_or_else(|| place.fault("there is no constant of that name"))?;
-        let value = self.value(&mut place, *entry, *depth, false)?;
+        let (entry, depth) = kind_of(name).ok_or_else(|| place.fault("there is no constant of that name"))?;
+        let value = self.value(&mut place, entry, depth, false)?;
         place.ends()?;
         Ok(value)
     }
@@ -129,11 +163,16 @@ pub(in crate::reader) fn sizes(constants: &BTreeMap<String, Constant>) -> Result
         None => Ok(0),
         Some(_) => Err(Fault { line: 1, reason: format!("`{name}` is more than {most}") }),
     };
+    let tips = tips_of(constants).into_iter().map(|tip| {
+        let rows = of(&constant_of(&tip, "TASK_ROWS"), 6)?;
+        Ok((tip, rows))
+    });
     Ok(Sizes {
         n: of("DOF", MOST_JOINTS)?,
         p: of("PARAMETERS", MOST_ENTRIES)?,
         b: of("BASE_PARAMETERS", MOST_ENTRIES)?,
         m: of("TASK_ROWS", 6)?,
         gravity: constants.contains_key(NOMINAL_GRAVITY),
+        tips: tips.collect::<Result<_, Fault>>()?,
     })
 }
