@@ -77,6 +77,7 @@ const RUNTIME: Layers = &[
     ("timing", &["linalg", "reference", "robot", "scalar", "settings", "trajectory"]),
     ("control", &["linalg", "orientation", "settings", "reference", "robot", "task"]),
     ("contact", &["control", "linalg", "reference", "robot", "settings"]),
+    ("payload", &["control", "linalg", "reference", "robot", "settings"]),
     ("simulation", &["linalg", "reference", "robot"]),
     ("stability", &["control", "linalg", "reference", "robot", "simulation"]),
 ];
