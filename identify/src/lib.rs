@@ -12,6 +12,7 @@ pub mod certificate;
 pub mod consistent;
 pub mod estimate;
 pub mod exact;
+pub mod excite;
 pub mod finding;
 pub mod fit;
 pub mod identify;

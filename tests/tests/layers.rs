@@ -159,6 +159,7 @@ const IDENTIFY: Layers = &[
     ("suspect", &["arm", "estimate", "finding", "fit", "log", "signal"]),
     ("judge", &["arm", "log", "prepare", "signal"]),
     ("identify", &["arm", "body", "estimate", "finding", "fit", "judge", "log", "options", "prepare", "signal", "suspect"]),
+    ("excite", &["arm", "prepare"]),
     ("consistent", &["arm", "body", "fit", "identify"]),
     ("written", &["arm", "body", "consistent", "identify", "prepare"]),
     ("exact", &[]),
