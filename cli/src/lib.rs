@@ -302,7 +302,7 @@ Exit codes: 0 done, 1 the description, the options or a log is faulty, or parame
         /// File for the description with the identified numbers
         #[arg(long, value_name = "IDENTIFIED.yaml", value_hint = ValueHint::FilePath)]
         out: Option<PathBuf>,
-        /// Folder for report.json
+        /// Folder for report.json, report.html and the certificate
         #[arg(long, value_name = "DIR", value_hint = ValueHint::DirPath)]
         report: Option<PathBuf>,
         /// Leave faulty rows out, with a warning

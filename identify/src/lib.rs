@@ -19,6 +19,7 @@ pub mod identify;
 pub mod judge;
 pub mod log;
 pub mod options;
+pub mod page;
 pub mod prepare;
 pub mod report;
 pub mod signal;

@@ -165,6 +165,7 @@ const IDENTIFY: Layers = &[
     ("exact", &[]),
     ("certificate", &["arm", "consistent", "exact", "identify", "prepare", "written"]),
     ("report", &["arm", "body", "finding", "identify", "judge", "written"]),
+    ("page", &["arm", "finding", "identify", "judge", "signal", "written"]),
 ];
 
 const COMMANDS: Layers =
