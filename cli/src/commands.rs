@@ -4,6 +4,7 @@ pub(crate) mod check;
 pub(crate) mod completions;
 pub(crate) mod convert;
 pub(crate) mod count;
+pub(crate) mod excite;
 pub(crate) mod export;
 pub(crate) mod generate;
 pub(crate) mod identify;

@@ -258,6 +258,24 @@ Exit codes: 0 equal, 1 not equal or faulty (the first entry that differs is name
         #[arg(long, value_parser = language_parser())]
         language: Option<Language>,
     },
+    /// Plan a motion that shows the parameters of an arm, within its limits at all times
+    #[command(after_help = "Examples:
+  armgen excite robot.yaml
+  armgen excite robot.yaml --out motion.csv --duration 20 --rate 250
+  armgen excite robot.yaml --out motion.csv --options excite.yaml
+
+Limits are those of the description: velocity, acceleration or effort, position. Options give the
+posture of the start and a box for the origins of frames (docs/identification.md). Limits hold
+between samples, too, by proof. The motion begins and ends at the same posture and can be repeated.
+Exit codes: 0 done, 1 the description or the options are faulty, or no motion was found,
+2 a file cannot be read or written, or the options are wrong.")]
+    Excite {
+        /// Description of the robot arm
+        #[arg(value_name = "ROBOT.yaml", value_hint = ValueHint::FilePath)]
+        file: PathBuf,
+        #[command(flatten)]
+        asked: commands::excite::Asked,
+    },
     /// Identify base parameters, friction and drive gains from logs of an arm
     #[command(after_help = "Examples:
   armgen identify robot.yaml log.csv --out identified.yaml --report out
@@ -288,7 +306,7 @@ Exit codes: 0 done, 1 the description, the options or a log is faulty, or parame
         /// File for the description with the identified numbers
         #[arg(long, value_name = "IDENTIFIED.yaml", value_hint = ValueHint::FilePath)]
         out: Option<PathBuf>,
-        /// Folder for report.json
+        /// Folder for report.json, report.html and the certificate
         #[arg(long, value_name = "DIR", value_hint = ValueHint::DirPath)]
         report: Option<PathBuf>,
         /// Leave faulty rows out, with a warning
@@ -531,6 +549,7 @@ fn run(command: Command) -> u8 {
         Command::Convert { file, convention, out } => convert::run(&file, convention, out.as_ref()),
         Command::Export { file, format, out } => export::run(&file, format, out.as_ref()),
         Command::Verify { description, module, language } => commands::verify::run(&description, &module, language),
+        Command::Excite { file, asked } => commands::excite::run(&file, &asked),
         Command::Identify { file, logs, options, validate, load, out, report, skip_bad, accept_unexcited } => {
             let asked = commands::identify::Asked { logs, options, validate, load, report, out, skip_bad, accept_unexcited };
             commands::identify::run(&file, &asked)

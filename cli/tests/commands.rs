@@ -4,6 +4,8 @@
 mod check;
 #[path = "commands/companions.rs"]
 mod companions;
+#[path = "commands/identify.rs"]
+mod identify;
 #[path = "commands/import.rs"]
 mod import;
 #[path = "commands/show.rs"]

@@ -16,8 +16,10 @@ use armgen_codegen::ring::Symbol;
 use armgen_codegen::Trig;
 use armgen_numbers as numbers;
 pub use armgen_numbers::postures::{Postures, Redundancy, Solver, Unfit, Verdict};
-pub use armgen_numbers::{Angle, Arithmetic, Input, Mismatch, Operator, Program, Workspace};
-use armgen_numbers::{Function, Operand, Operation, Output, Sines};
+use armgen_numbers::Sines;
+pub use armgen_numbers::{
+    Angle, Arithmetic, Function, Input, Mismatch, Operand, Operation, Operator, Output, Program, Workspace,
+};
 pub use postures::{inverse_kinematics, solver};
 
 /// A scalar of executed programs.

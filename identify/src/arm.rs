@@ -14,7 +14,7 @@ use armgen_codegen::kinds::JointKind;
 use armgen_codegen::manipulator::{Body, Manipulator, PlacedBody, RegressorChoice};
 use armgen_codegen::schedule::{self, Options, Selection};
 use armgen_codegen::Model;
-use armgen_evaluate::Program;
+use armgen_evaluate::{function, Function, Program};
 use nalgebra::{DMatrix, DVector, Matrix3, Vector3};
 
 mod apart;
@@ -100,6 +100,8 @@ pub struct Arm {
     pub rotors: Vec<usize>,
     /// Terms of friction that no motion tells from other parameters.
     pub dependent: Vec<Dependent>,
+    /// The steps of Y_b, for derivatives of it.
+    pub(crate) steps: Function<f64>,
     regressor: Program<f64>,
     known: Option<Program<f64>>,
 }
@@ -220,6 +222,7 @@ impl Arm {
         let functions = Selection::named(wanted).expect("functions of every arm with mass");
         let module = schedule::module(&model, &Options { functions, ..Options::default() });
         let mut programs = armgen_evaluate::programs(&module).into_iter();
+        let steps = function(&module, &module.functions[0]);
         let regressor = programs.next().expect("an arm with mass has a regressor");
         // A load is a body that the last link carries.
         let tool = &given.tool.frame;
@@ -245,6 +248,7 @@ impl Arm {
             payload: given.payload.as_ref().map(|payload| ten_of(given, &payload.body)),
             rotors,
             dependent,
+            steps,
             regressor,
             known: programs.next(),
         })

@@ -370,10 +370,7 @@ fn bodies(manipulator: &Manipulator) -> Result<Vec<Value>, String> {
 
 /// The pivots as fractions, or as the nearest floats where they are none.
 fn pivots_of(manipulator: &Manipulator, body: &Body) -> Option<Vec<String>> {
-    let minors = crate::written::minors(manipulator, body);
-    if minors.iter().any(|minor| minor.sign() != std::cmp::Ordering::Greater) {
-        return None;
-    }
+    let minors = crate::written::minors(manipulator, body)?;
     let mut texts = Vec::new();
     for (k, minor) in minors.iter().enumerate() {
         let before = if k < 2 { Some(&Rational::ONE) } else { minors[k - 1].as_rational() };

@@ -387,19 +387,25 @@ impl<'a> Estimate<'a> {
         let (equations, _) = self.equations();
         let residuals = equations.residuals(&self.active, &DVector::from_fn(self.active.len(), |k, _| self.x[self.active[k]]));
         let of: Vec<usize> = (0..residuals.len()).filter(|&k| equations.rows[k].joint == joint).collect();
-        let first = self.place(Column::Friction(0, joint, Friction::Viscous));
-        let has_cubic = self.active.contains(&(first + Friction::Cubic as usize));
+        // Friction is that of a session, the velocity that of all.
+        let sessions = 1 + self.runs.iter().map(|run| run.session).max().unwrap_or(0);
+        let firsts: Vec<usize> =
+            (0..sessions).map(|session| self.place(Column::Friction(session, joint, Friction::Viscous))).collect();
+        let has_cubic = self.active.contains(&(firsts[0] + Friction::Cubic as usize));
         let cost = |log: f64| {
             let mut column = Vec::new();
             for (piece, sizes) in self.pieces.iter().zip(&self.sizes) {
                 column.extend(piece.friction(joint, Friction::Stribeck, log.exp(), sizes));
             }
-            let mut small = Equations { columns: 5, ..Equations::default() };
+            let mut small = Equations { columns: 5 * sessions, ..Equations::default() };
             let mut weights = Vec::new();
             for (&k, stribeck) in of.iter().zip(&column) {
-                let row = equations.row(k);
+                let (row, session) = (equations.row(k), self.runs[equations.rows[k].log].session);
+                let first = firsts[session];
                 let cubic = if has_cubic { row[first + Friction::Cubic as usize] } else { 0.0 };
-                small.a.extend([row[first], row[first + 1], 1.0, *stribeck, cubic]);
+                small.a.resize(small.a.len() + 5 * sessions, 0.0);
+                let start = small.a.len() - 5 * (sessions - session);
+                small.a[start..start + 5].copy_from_slice(&[row[first], row[first + 1], 1.0, *stribeck, cubic]);
                 small.b.push(residuals[k]);
                 small.rows.push(equations.rows[k]);
                 weights.push(self.weights[k]);

@@ -91,7 +91,12 @@ pub struct Piece {
     pub eps: Vec<f64>,
     /// The low pass.
     pub filter: LowPass,
+    /// Filtered columns of friction that depend on rates alone, by joint.
+    of_rates: Vec<[Vec<f64>; 3]>,
 }
+
+/// These terms.
+const OF_RATES: [Friction; 3] = [Friction::Viscous, Friction::Coulomb, Friction::Cubic];
 
 /// Samples of a stretch that are filtered at once.
 const LONGEST: usize = 16_384;
@@ -209,7 +214,10 @@ fn piece(
     };
     let y = keep(&full, columns);
     let known = keep(&arm.known(&q, &dq, &ddq), n);
-    Piece { log: place, period, start: grid[0], q, dq, ddq, tau, kept, y, known, counts, eps, filter }
+    let mut piece =
+        Piece { log: place, period, start: grid[0], q, dq, ddq, tau, kept, y, known, counts, eps, filter, of_rates: Vec::new() };
+    piece.of_rates = (0..n).map(|i| OF_RATES.map(|term| piece.column(i, term, 1.0, &[]))).collect();
+    piece
 }
 
 impl Piece {
@@ -229,10 +237,15 @@ impl Piece {
 
     /// A filtered column of a joint at the kept samples. `sizes` has |g| state by state, and is used by load friction.
     pub fn friction(&self, joint: usize, term: Friction, velocity: f64, sizes: &[f64]) -> Vec<f64> {
-        let n = self.tau.len();
-        if term == Friction::Offset {
-            return vec![1.0; self.kept.len()];
+        match OF_RATES.iter().position(|known| *known == term) {
+            Some(place) => self.of_rates[joint][place].clone(),
+            None if term == Friction::Offset => vec![1.0; self.kept.len()],
+            None => self.column(joint, term, velocity, sizes),
         }
+    }
+
+    fn column(&self, joint: usize, term: Friction, velocity: f64, sizes: &[f64]) -> Vec<f64> {
+        let n = self.tau.len();
         let full: Vec<f64> = (0..self.tau[joint].len())
             .map(|k| {
                 let size = sizes.get(k * n + joint).map_or(0.0, |g| g.abs());

@@ -359,8 +359,9 @@ fn is_found(found: &Identified, joint: usize) -> bool {
     found.reduced.friction.contains(&(joint, Friction::Stribeck))
 }
 
-/// The leading minors of diag(m, S), exactly.
-pub(crate) fn minors(manipulator: &Manipulator, given: &Body) -> [Number; 4] {
+/// The leading minors of diag(m, S), exactly, where all are positive. Their quotients are the pivots of LDL'; roots stay exact, since nothing
+/// is divided.
+pub(crate) fn minors(manipulator: &Manipulator, given: &Body) -> Option<[Number; 4]> {
     let of = |value: &Polynomial| nominal(manipulator, value);
     let [xx, xy, yy, xz, yz, zz] = given.inertia.each_ref().map(of);
     let half = Number::from(Rational::from_parts(1.into(), 2u8.into()));
@@ -373,7 +374,8 @@ pub(crate) fn minors(manipulator: &Manipulator, given: &Body) -> [Number; 4] {
     let second = &d * &(&(&d * &c) - &(&f * &e));
     let third = &e * &(&(&d * &f) - &(&b * &e));
     let three = &(&first - &second) + &third;
-    [of(&given.mass), a, two, three]
+    let minors = [of(&given.mass), a, two, three];
+    minors.iter().all(|minor| minor.sign() == std::cmp::Ordering::Greater).then_some(minors)
 }
 
 /// The pivots of each link's own body; the link whose body is not positive definite.
@@ -381,10 +383,7 @@ fn pivots(manipulator: &Manipulator) -> Result<Vec<[f64; 4]>, usize> {
     let links = manipulator.joints.iter().enumerate();
     links
         .map(|(i, joint)| {
-            let minors = minors(manipulator, &joint.link.first().ok_or(i)?.given);
-            if minors.iter().any(|minor| minor.sign() != std::cmp::Ordering::Greater) {
-                return Err(i);
-            }
+            let minors = joint.link.first().and_then(|body| minors(manipulator, &body.given)).ok_or(i)?;
             let [mass, a, two, three] = minors.map(|minor| minor.to_f64());
             Ok([mass, a, two / a, three / two])
         })

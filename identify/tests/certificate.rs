@@ -1,7 +1,7 @@
 //! Certificates: what is proved of written numbers, and that nothing of them can change.
 
 use armgen_codegen::source::Source;
-use armgen_identify::certificate::{check, write_certified, LARGEST_GAP};
+use armgen_identify::certificate::{check, write_certified, Proved, LARGEST_GAP};
 use armgen_identify::consistent::consistent;
 use armgen_identify::finding::Findings;
 use armgen_identify::identify::{identify, Input};
@@ -13,7 +13,13 @@ use crate::arms::{arm, csv, format, motion, Random, ELBOW};
 /// An identified elbow and its certificate; logs with noise of a size, N m.
 fn certified(noise: f64) -> (Source, String) {
     let guess = ELBOW.replace("mass: 7", "mass: 5.5").replace("viscous: 6", "viscous: 1");
-    let (truth, arm) = (arm(ELBOW), arm(&guess));
+    let (source, text, proved) = certified_from(&guess, noise);
+    assert!(proved.gap.as_ref().is_ok_and(|gap| *gap <= LARGEST_GAP), "{proved:?}");
+    (source, text)
+}
+
+fn certified_from(guess: &str, noise: f64) -> (Source, String, Proved) {
+    let (truth, arm) = (arm(ELBOW), arm(guess));
     let mut motion = motion(ELBOW, 5, 20.0, 100.0);
     let mut random = Random(8);
     motion.tau.iter_mut().for_each(|tau| *tau += noise * random.normal());
@@ -22,14 +28,29 @@ fn certified(noise: f64) -> (Source, String) {
     let mut findings = Findings::default();
     let found = identify(&arm, &[Input { log, ..Input::default() }], &Options::default(), &mut findings).expect("a good log");
     let of = consistent(&arm, &found.reduced);
-    let guess = Source::new("guess", guess.as_str());
+    let guess = Source::new("guess", guess);
     let (written, text, proved) = write_certified(&guess, false, &arm, &found, &of).unwrap_or_else(|reason| panic!("{reason}"));
     let source = Source::new("identified.yaml", written.text);
     println!("noise {noise}: {proved:?}, {} bytes", text.len());
     assert_eq!(proved.bodies, 3);
-    assert!(proved.gap.as_ref().is_ok_and(|gap| *gap <= LARGEST_GAP), "{proved:?}");
-    assert_eq!(check(&source, &text), Ok(proved));
-    (source, text)
+    assert_eq!(check(&source, &text).as_ref(), Ok(&proved));
+    (source, text, proved)
+}
+
+/// A tensor in axes with roots: bodies are proved possible, and the reason why no more is proved is given and verified.
+#[test]
+fn bodies_with_roots_are_proved_possible() {
+    let guess = ELBOW.replace("inertia: {xx: 0.02, ", "inertia: {rpy: [0, pi/4, 0], xx: 0.02, ");
+    assert_ne!(guess, ELBOW);
+    let (source, text, proved) = certified_from(&guess, 0.2);
+    let reason = proved.gap.expect_err("roots are no fractions");
+    assert!(reason.contains("shoulder") && reason.contains("not rational"), "{reason}");
+    let all: serde_json::Value = serde_json::from_str(&text).expect("JSON");
+    let mut changed = all.clone();
+    changed["bodies"][1]["pivots"][0] = "3".into();
+    assert!(check(&source, &with_digest(&changed.to_string())).is_err());
+    // Nor can a certificate claim more than there is.
+    assert!(all["optimality"].get("gap").is_none(), "{}", all["optimality"]);
 }
 
 /// The digest after a change: a digest protects from slips, the proof from all else.

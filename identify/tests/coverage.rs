@@ -48,12 +48,22 @@ fn shares(logs: usize, memory: f64) -> (f64, f64) {
 #[test]
 #[ignore = "wide"]
 fn intervals_hold_for_white_and_for_coloured_noise() {
+    intervals_hold(300);
+}
+
+#[test]
+#[ignore = "full: minutes, a thousand logs of each noise"]
+fn intervals_hold_for_a_thousand_logs() {
+    intervals_hold(1000);
+}
+
+fn intervals_hold(logs: usize) {
     let promised = 0.985..0.9995;
-    let (white, plain) = shares(300, 0.0);
+    let (white, plain) = shares(logs, 0.0);
     println!("white noise: {white:.4}, by the plain formula {plain:.4}");
     assert!(promised.contains(&white), "{white}");
     // exp(-0.02 s / 0.05 s)
-    let (coloured, plain) = shares(300, 0.67);
+    let (coloured, plain) = shares(logs, 0.67);
     println!("coloured noise: {coloured:.4}, by the plain formula {plain:.4}");
     assert!(promised.contains(&coloured), "{coloured}");
     assert!(!promised.contains(&plain), "the plain formula holds for coloured noise: {plain}");

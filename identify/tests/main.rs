@@ -4,6 +4,7 @@ mod arms;
 mod certificate;
 mod codes;
 mod coverage;
+mod excite;
 mod friction;
 mod options;
 mod text;

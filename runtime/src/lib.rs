@@ -27,6 +27,7 @@ pub mod inverse_kinematics;
 pub mod linalg;
 pub mod manipulability;
 pub mod orientation;
+pub mod payload;
 pub mod reference;
 pub mod robot;
 mod scalar;

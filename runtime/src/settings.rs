@@ -65,6 +65,12 @@ pub enum Setting {
     ObserverGain,
     /// A part of the threshold of an observer.
     Threshold,
+    /// The part of the information that is left after a second; at most 1.
+    Forgetting,
+    /// The spread of the error of torques, N m or N.
+    TorqueSpread,
+    /// The rate below which a joint does not count, rad/s or m/s.
+    LeastRate,
 }
 
 impl core::fmt::Display for Setting {
@@ -98,6 +104,9 @@ impl core::fmt::Display for Setting {
             Setting::Mass => "the mass",
             Setting::ObserverGain => "the gains of the observer (or 1 less their product with the period)",
             Setting::Threshold => "the threshold",
+            Setting::Forgetting => "the forgetting (or 1 less it)",
+            Setting::TorqueSpread => "the spreads of torques",
+            Setting::LeastRate => "the least rate",
         })
     }
 }

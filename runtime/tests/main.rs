@@ -12,6 +12,7 @@ mod joint_control;
 mod manipulability;
 mod model;
 mod operational_space;
+mod payload;
 mod plant;
 mod quadratic_program;
 mod random_starts;

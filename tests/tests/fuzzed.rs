@@ -109,6 +109,12 @@ fn mjcf_files() {
 }
 
 #[test]
+#[ignore = "wide"]
+fn logs() {
+    fuzz(fuzz::log::run, &["corpus/log"], 3000);
+}
+
+#[test]
 fn poses() {
     fuzz(fuzz::poses::run, &["corpus/poses"], 3000);
 }

@@ -77,6 +77,7 @@ const RUNTIME: Layers = &[
     ("timing", &["linalg", "reference", "robot", "scalar", "settings", "trajectory"]),
     ("control", &["linalg", "orientation", "settings", "reference", "robot", "task"]),
     ("contact", &["control", "linalg", "reference", "robot", "settings"]),
+    ("payload", &["control", "linalg", "reference", "robot", "settings"]),
     ("simulation", &["linalg", "reference", "robot"]),
     ("stability", &["control", "linalg", "reference", "robot", "simulation"]),
 ];
@@ -158,11 +159,13 @@ const IDENTIFY: Layers = &[
     ("suspect", &["arm", "estimate", "finding", "fit", "log", "signal"]),
     ("judge", &["arm", "log", "prepare", "signal"]),
     ("identify", &["arm", "body", "estimate", "finding", "fit", "judge", "log", "options", "prepare", "signal", "suspect"]),
+    ("excite", &["arm", "prepare"]),
     ("consistent", &["arm", "body", "fit", "identify"]),
     ("written", &["arm", "body", "consistent", "identify", "prepare"]),
     ("exact", &[]),
     ("certificate", &["arm", "consistent", "exact", "identify", "prepare", "written"]),
     ("report", &["arm", "body", "finding", "identify", "judge", "written"]),
+    ("page", &["arm", "finding", "identify", "judge", "signal", "written"]),
 ];
 
 const COMMANDS: Layers =

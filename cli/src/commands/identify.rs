@@ -14,8 +14,8 @@ use armgen_identify::judge::{judge, Judgement, Model};
 use armgen_identify::log::{self, Format, Log};
 use armgen_identify::options::{self, Load, LogOptions, Options};
 use armgen_identify::prepare::Friction;
-use armgen_identify::report;
 use armgen_identify::written::Written;
+use armgen_identify::{page, report};
 use serde_json::json;
 
 use super::verify::with_spinner;
@@ -107,16 +107,21 @@ fn run_or_exit_code(file: &Path, asked: &Asked) -> Result<u8, u8> {
     if let Some(folder) = &asked.report {
         let report = report::json(&arm, &inputs, &found, of_written, &validation, &findings);
         write_report(folder, &report)?;
-        if let Some((_, certificate, _)) = &written {
-            write_in(folder, "certificate.json", certificate)?;
-        }
+        let proved = written.as_ref().map(|(written, _, proved)| (written, proofs(proved)));
+        let proved = proved.as_ref().map(|(written, proofs)| (*written, proofs.as_str()));
+        let html = page::html(&arm, &inputs, &found, proved, &validation, &findings);
+        write_to(&folder.join("report.html"), &html)?;
     }
-    if let (Some(out), Some((written, _, proved))) = (&asked.out, &written) {
+    if let (Some(out), Some((written, certificate, proved))) = (&asked.out, &written) {
         let read = [Some(file), asked.options.as_deref()].into_iter().flatten().chain(asked.logs.iter().map(PathBuf::as_path));
         let wrote = output::write_other(read.map(|path| (path, "read by this command")), out, &with_mark_of(file, &written.text));
         if wrote != DONE {
             return Err(wrote);
         }
+        // Beside the file where there is no folder for it.
+        let beside = out.with_extension("cert.json");
+        let place = asked.report.as_ref().map_or(beside, |folder| folder.join("certificate.json"));
+        write_to(&place, certificate)?;
         written.notes.iter().for_each(|note| terminal::note(note));
         code = code.max(terminal::print(&told(out, written, proved)));
         if proved.gap.as_ref().is_ok_and(|gap| *gap > LARGEST_GAP) {
@@ -260,18 +265,18 @@ fn judged(arm: &Arm, logs: Vec<Log>, asked: &Asked, findings: &Findings) -> Resu
     if let Some(folder) = &asked.report {
         let of: Vec<_> = validation.iter().map(|(file, of)| report::judgement(arm, file, of)).collect();
         write_report(folder, &json!({"robot": arm.name, "validation": of, "diagnostics": report::findings(findings)}))?;
+        write_to(&folder.join("report.html"), &page::of_validation(arm, &validation, findings))?;
     }
     Ok(code)
 }
 
 fn write_report(folder: &Path, report: &serde_json::Value) -> Result<(), u8> {
     let text = serde_json::to_string_pretty(report).expect("strings and numbers always have a JSON form") + "\n";
-    write_in(folder, "report.json", &text)
+    write_to(&folder.join("report.json"), &text)
 }
 
-fn write_in(folder: &Path, name: &str, text: &str) -> Result<(), u8> {
-    let path = folder.join(name);
-    output::write(&path, text).map_err(|error| {
+fn write_to(path: &Path, text: &str) -> Result<(), u8> {
+    output::write(path, text).map_err(|error| {
         terminal::error(&format!("cannot write {}: {error}", path.display()));
         UNREADABLE
     })

@@ -248,3 +248,16 @@ pub(crate) fn with_spinner<T>(what: &'static str, work: impl FnOnce() -> T) -> T
         value
     })
 }
+
+/// Does `work` of so many parts, each of which calls its argument; a terminal shows a bar.
+pub(crate) fn with_bar<T>(what: &'static str, parts: usize, work: impl FnOnce(&(dyn Fn() + Sync)) -> T) -> T {
+    // Drawn on a terminal only.
+    let bar = ProgressBar::new(parts as u64);
+    if let Ok(style) = ProgressStyle::with_template("  {msg} [{bar:40}] {elapsed}") {
+        bar.set_style(style);
+    }
+    bar.set_message(what);
+    let value = work(&|| bar.inc(1));
+    bar.finish_and_clear();
+    value
+}

@@ -2,6 +2,7 @@
 
 pub mod experiment;
 pub mod expression;
+pub mod log;
 pub mod module;
 pub mod poses;
 pub mod robot;

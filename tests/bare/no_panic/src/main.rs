@@ -49,6 +49,8 @@ pub extern "C" fn main() -> i32 {
     runtime::every_step::<_, 4, 4, { scara_f64::PARAMETERS }>(&parameters, [X, Y, Z, Rz]);
     runtime::every_observation(&scara_f32::Nominal);
     runtime::every_observation(&panda7_f64::Nominal);
+    runtime::every_estimate(&scara_f32::Nominal);
+    runtime::every_estimate(&panda7_f64::Nominal);
     timing::every_timing(&scara_f64::Nominal);
     timing::every_timing(&scara_f32::Nominal);
     timing::every_timing(&panda7_f64::Nominal);

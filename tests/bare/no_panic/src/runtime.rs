@@ -18,6 +18,7 @@ use armgen_runtime::{
     manipulability,
     nalgebra::{convert, Matrix3, RealField, SMatrix, SVector, Unit},
     orientation,
+    payload::{payload_regressor, PayloadEstimator, PayloadSettings},
     reference::{JointReference, OperationalReference, Pose, State},
     robot::{
         array, matrix, CoriolisTransposeTimes, Dynamics, InverseKinematics, JointRanges, Kinematics, Momentum, Postures,
@@ -83,6 +84,32 @@ where
 fn every_range<R: JointRanges<N>, const N: usize>(robot: &R) {
     keep((JointRanges::turns(robot), JointRanges::position_limits(robot)));
     keep(JointRanges::unwrapped(robot, &vector(), &vector()));
+}
+
+/// Estimates a payload.
+#[inline(never)]
+pub(crate) fn every_estimate<R, const N: usize>(robot: &R)
+where
+    R: Dynamics<N> + Momentum<N> + CoriolisTransposeTimes<N>,
+{
+    let state = State { q: vector(), dq: vector() };
+    let settings = PayloadSettings::<R::Real, N> {
+        gravity: vector(),
+        period: number(),
+        filter: number(),
+        forgetting: number(),
+        spread: vector(),
+        least_rate: number(),
+        body: numbers(),
+        deviation: numbers(),
+        is_slow: black_box(false),
+    };
+    keep(payload_regressor(robot, &state, &vector()));
+    if let Ok(mut estimator) = PayloadEstimator::new(settings) {
+        keep(PayloadEstimator::step(&mut estimator, robot, &state, &vector()));
+        keep(PayloadEstimator::estimate(&estimator));
+        keep(PayloadEstimator::physical(&mut estimator));
+    }
 }
 
 /// Observes contacts and answers them.
