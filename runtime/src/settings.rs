@@ -65,6 +65,12 @@ pub enum Setting {
     ObserverGain,
     /// A part of the threshold of an observer.
     Threshold,
+    /// The weight of a task row.
+    Weight,
+    /// The time for which accelerations are held until joints can brake.
+    Horizon,
+    /// The share of an acceleration limit that braking counts with; at most 1.
+    BrakingShare,
 }
 
 impl core::fmt::Display for Setting {
@@ -98,6 +104,9 @@ impl core::fmt::Display for Setting {
             Setting::Mass => "the mass",
             Setting::ObserverGain => "the gains of the observer (or 1 less their product with the period)",
             Setting::Threshold => "the threshold",
+            Setting::Weight => "the weights",
+            Setting::Horizon => "the horizon",
+            Setting::BrakingShare => "the share of braking (or of 1 less it)",
         })
     }
 }

@@ -9,6 +9,7 @@ mod examples;
 mod governor;
 mod hands;
 mod joint_control;
+mod limited;
 mod manipulability;
 mod model;
 mod operational_space;
