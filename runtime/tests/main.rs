@@ -13,6 +13,7 @@ mod limited;
 mod manipulability;
 mod model;
 mod operational_space;
+mod pick_and_place;
 mod plant;
 mod quadratic_program;
 mod random_starts;
