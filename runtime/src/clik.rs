@@ -16,6 +16,7 @@
 //! ([`JacobianTranspose::loop_gain`]).
 //!
 //! [`Clik`] runs a first-order algorithm: it bounds the rates, stops at joint limits and names what happened ([`Outcome`]).
+//! [`Limited`] finds the best rates within limits of position, rate and acceleration, for tasks in order of priority.
 //!
 //! ```
 //! use armgen_runtime::clik::{Clik, ClikError, DampedLeastSquares, JointLimits, Outcome};
@@ -39,13 +40,15 @@
 
 mod first_order;
 mod follow;
+mod limited;
 mod limits;
 mod objective;
 mod second_order;
 
 pub use first_order::{Algorithm, DampedLeastSquares, JacobianInverse, JacobianTranspose, PseudoInverse, Rates};
 pub use follow::{Clik, Reached, Step};
-pub use limits::{JointLimits, WithinRange};
+pub use limited::{Limited, LimitedSample, LimitedStep};
+pub use limits::{Bounds, JointLimits, WithinRange};
 pub use objective::{JointRangeDistance, Manipulability, NoObjective, Objective};
 pub use second_order::{Integration, SecondOrder, SecondOrderStep};
 
@@ -61,6 +64,8 @@ pub enum ClikError {
     Singular,
     /// The law gave infinite or NaN rates: gains or model are beyond the range of the scalar.
     RatesNotFinite,
+    /// The quadratic program of a level has no solution: its numbers are infinite or NaN, or beyond the range of the scalar.
+    NotSolved,
 }
 
 messages! { ClikError,
@@ -68,6 +73,7 @@ messages! { ClikError,
     ClikError::ReferenceNotFinite => "the reference is infinite or NaN";
     ClikError::Singular => "the Jacobian of the task has lost rank: use damped least squares, or keep away from singular postures";
     ClikError::RatesNotFinite => "the rates or accelerations are infinite or NaN: gains or model are beyond the range of the scalar";
+    ClikError::NotSolved => "the quadratic program of a level has no solution: its numbers are infinite, NaN, or beyond the range of the scalar";
 }
 
 /// Outcome of a step, or of a whole approach.

@@ -180,7 +180,7 @@ impl<T: RealField + Copy, const N: usize> MomentumObserver<T, N> {
     }
 }
 
-/// The arm's answer to a contact.
+/// The arm's answer to a contact. On a timed path, `Governor` of `timing` stops within the limits, and leads back on the reversed path.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Reaction<T, const N: usize> {
     /// The arm carries itself and gives way.

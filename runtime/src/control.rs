@@ -9,12 +9,13 @@
 //! | [`Robust`] | the same with y + w, w bounded by the uncertainty | Sect. 8.5.3 |
 //! | [`Adaptive`] | u = Y(q, dq, dq_r, ddq_r) pi^ + tau_known + F_l^ + K_D sigma, pi^ adapted | Sect. 8.5.4 |
 //! | [`OperationalSpace`] | u = B^ y + n^, y = J^+ (a_d + K_D de + K_P e + K_I int e - dJ dq) | Sect. 8.6.2 |
+//! | [`Limited`] | the same with ddq within limits: least |J ddq + dJ dq - a|, then least |ddq - y_0| | |
 //! | [`Impedance`] | u = g^ + J' (K e + D de) + B^ ddq_r + C^ dq_r | Sect. 9.3 |
 //! | [`HandGuiding`] | u = g^ - D dq + walls + hold | |
 //!
 //! with e = q_d - q (or the pose error of the task), de its derivative. Gains are diagonal, hence positive definite where every
 //! element is positive; the constructors check it. A controller holds gains, no robot and no clock: the caller owns the loop and
-//! passes the model, the reference and the measurement of each sample. Only [`Adaptive`] and [`OperationalSpace`] have a controller state
+//! passes the model, the reference and the measurement of each sample. Only [`Adaptive`], [`OperationalSpace`] and [`Limited`] have a controller state
 //! that is advanced by forward Euler after the torque is computed; [`HandGuiding`] drags the anchor of its hold.
 //!
 //! [`Admittance`] is for arms that take positions: a measured force moves their reference.
@@ -56,6 +57,7 @@ mod friction;
 mod hand_guiding;
 mod impedance;
 mod inverse_dynamics;
+mod limited;
 mod limits;
 mod operational_space;
 mod pd;
@@ -67,13 +69,14 @@ pub use friction::FrictionCompensation;
 pub use hand_guiding::{HandGuiding, Walls};
 pub use impedance::Impedance;
 pub use inverse_dynamics::InverseDynamics;
+pub use limited::{Limited, LimitedTorque};
 pub use limits::TorqueLimits;
 pub use operational_space::{NullSpace, OperationalSpace};
 pub use pd::PdGravity;
 pub use robust::{BoundaryLayer, Robust};
 
 use crate::{
-    linalg::{is_finite, Limited},
+    linalg::{self, is_finite},
     reference::{JointReference, OperationalReference, State},
     robot::{Dynamics, Kinematics, Regressor},
 };
@@ -95,6 +98,8 @@ pub enum ControlError {
     AccelerationNotFinite,
     /// The inertia matrix of the model is not positive definite.
     Inertia,
+    /// The quadratic program has no solution: its numbers are infinite or NaN, or beyond the range of the scalar.
+    NotSolved,
     /// The next estimate or integral would be infinite or NaN: gains or model are beyond the range of the scalar.
     StateNotFinite,
 }
@@ -106,6 +111,7 @@ messages! { ControlError,
     ControlError::TorqueNotFinite => "the torque is infinite or NaN: gains or model are beyond the range of the scalar";
     ControlError::AccelerationNotFinite => "the damped inverse gives no joint acceleration: Jacobian or gains are beyond the range of the scalar";
     ControlError::Inertia => "the inertia matrix of the model is not positive definite";
+    ControlError::NotSolved => "the quadratic program has no solution: its numbers are infinite, NaN, or beyond the range of the scalar";
     ControlError::StateNotFinite => "the next estimate or integral is infinite or NaN: gains or model are beyond the range of the scalar";
 }
 
@@ -163,6 +169,20 @@ controller!(Adaptive<R::Real, N, P>, Regressor<N, P>, JointReference<R::Real, N>
 controller!(OperationalSpace<R::Real, N, M>, Dynamics<N>, OperationalReference<R::Real>, M);
 controller!(Impedance<R::Real, N, M>, Dynamics<N>, OperationalReference<R::Real>, M);
 
+impl<R: Dynamics<N>, const N: usize, const M: usize> Controller<R, N> for Limited<R::Real, N, M> {
+    type Reference = OperationalReference<R::Real>;
+
+    #[inline]
+    fn torque(
+        &mut self,
+        model: &R,
+        reference: &Self::Reference,
+        measured: &State<R::Real, N>,
+    ) -> Result<Torque<R::Real, N>, ControlError> {
+        Ok(Limited::torque(self, model, reference, measured)?.torque)
+    }
+}
+
 /// A hand leads the arm, so there is no reference.
 impl<R: Dynamics<N>, const N: usize> Controller<R, N> for HandGuiding<R::Real, N> {
     type Reference = ();
@@ -199,9 +219,9 @@ fn issue<T: RealField + Copy, const N: usize>(
     if !is_finite(&tau) {
         return Err(ControlError::TorqueNotFinite);
     }
-    let Limited { value: tau, is_limited: limited } = match limits {
+    let linalg::Limited { value: tau, is_limited: limited } = match limits {
         Some(limits) => limits.apply(&tau),
-        None => Limited { value: tau, is_limited: false },
+        None => linalg::Limited { value: tau, is_limited: false },
     };
     Ok(Torque { tau, limited, damped })
 }

@@ -5,12 +5,14 @@
 //! program, each bounded in its work and without allocation.
 
 mod cholesky;
+mod levels;
 mod lyapunov;
 mod quadratic_program;
 mod right_inverse;
 mod singular;
 
 pub use cholesky::Cholesky;
+pub(crate) use levels::Levels;
 pub use lyapunov::{diagonal_lyapunov, LyapunovBlocks};
 pub use quadratic_program::{quadratic_program, NoOptimum, Optimum};
 pub use right_inverse::{Damping, DampingBelow, DampingError, RightInverse, Solution};

@@ -71,6 +71,12 @@ pub enum Setting {
     TorqueSpread,
     /// The rate below which a joint does not count, rad/s or m/s.
     LeastRate,
+    /// The weight of a task row.
+    Weight,
+    /// The time for which accelerations are held until joints can brake.
+    Horizon,
+    /// The share of an acceleration limit that braking counts with; at most 1.
+    BrakingShare,
 }
 
 impl core::fmt::Display for Setting {
@@ -107,6 +113,9 @@ impl core::fmt::Display for Setting {
             Setting::Forgetting => "the forgetting (or 1 less it)",
             Setting::TorqueSpread => "the spreads of torques",
             Setting::LeastRate => "the least rate",
+            Setting::Weight => "the weights",
+            Setting::Horizon => "the horizon",
+            Setting::BrakingShare => "the share of braking (or of 1 less it)",
         })
     }
 }

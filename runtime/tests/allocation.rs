@@ -5,12 +5,12 @@ use crate::common;
 use allocation_counter::measure;
 use armgen_runtime::{
     clik::{
-        Clik, DampedLeastSquares, Integration, JacobianInverse, JacobianTranspose, JointLimits, JointRangeDistance,
+        Clik, DampedLeastSquares, Integration, JacobianInverse, JacobianTranspose, JointLimits, JointRangeDistance, Limited,
         Manipulability, PseudoInverse,
     },
     control::{
-        Adaptive, Admittance, BoundaryLayer, FrictionCompensation, HandGuiding, Impedance, Interval, InverseDynamics, NullSpace,
-        OperationalSpace, PdGravity, Robust, TorqueLimits, Walls,
+        self, Adaptive, Admittance, BoundaryLayer, FrictionCompensation, HandGuiding, Impedance, Interval, InverseDynamics,
+        NullSpace, OperationalSpace, PdGravity, Robust, TorqueLimits, Walls,
     },
     linalg::{quadratic_program, Damping},
     manipulability::{
@@ -96,17 +96,20 @@ fn operational_space_controllers() {
         .with_torque_limits(limits)
         .with_integral_limit([1e-3; 4])
         .unwrap();
+    let joints = JointLimits::rates([3.0, 3.0, 1.0, 6.0]).unwrap().with_acceleration([10.0; 4]).unwrap();
+    let mut limited = control::Limited::new(full, limits, joints, 8e-3, 0.7).unwrap();
     let good = ghost::ghost::<f64>().sample(Duration::from_millis(4321));
     let mut bad = good;
     bad.pose.rotation[(1, 1)] = f64::NAN;
     let mut errors = 0;
     for measured in states() {
         for reference in [good, bad] {
+            errors += usize::from(none("limited", || limited.torque(&model, &reference, &measured)).is_err());
             errors += usize::from(none("plain", || plain.torque(&model, &reference, &measured)).is_err());
             errors += usize::from(none("full", || full.torque(&model, &reference, &measured)).is_err());
         }
     }
-    assert_eq!(errors, 7 + 8, "the plain one errs at the singular posture, too");
+    assert_eq!(errors, 7 + 7 + 8, "the plain one errs at the singular posture, too");
 }
 
 #[test]
@@ -134,8 +137,9 @@ fn laws_for_hands() {
     assert_eq!(errors, 2 + 7 + 6, "two states are broken for guiding and the impedance, one force for the admittance");
     let h = nalgebra::Matrix4::identity();
     let rows = -nalgebra::Matrix4::identity();
-    none("a program", || quadratic_program(&h, &vector![-1.0, 2.0, -3.0, 4.0], &rows, &vector![-0.5, -0.5, -0.5, -0.5])).unwrap();
-    none("no point", || quadratic_program(&h, &vector![0.0, 0.0, 0.0, 0.0], &(rows * 0.0), &vector![1.0, 0.0, 0.0, 0.0]))
+    none("a program", || quadratic_program(&h, &vector![-1.0, 2.0, -3.0, 4.0], &[rows], &[vector![-0.5, -0.5, -0.5, -0.5]]))
+        .unwrap();
+    none("no point", || quadratic_program(&h, &vector![0.0, 0.0, 0.0, 0.0], &[rows * 0.0], &[vector![1.0, 0.0, 0.0, 0.0]]))
         .unwrap_err();
 }
 
@@ -154,6 +158,7 @@ fn clik() {
     let range = JointRangeDistance::new([-3.0, -2.6, 0.0, -6.0], [3.0, 2.6, 0.45, 6.0]).unwrap();
     let range = PseudoInverse::new([50.0; 3], 10.0, range).unwrap().with_damping(damping);
     let range = Clik::new(relaxed, range, 1e-3, limits, [1e-6; 3]).unwrap();
+    let limited = Limited::new(ghost::task(), [50.0; 4], 1e-3, limits.with_acceleration([10.0; 4]).unwrap()).unwrap();
     let second = ghost::second_order(Integration::HoldConsistent);
     let second_damped = ghost::second_order(Integration::ExplicitEuler).with_damping(damping);
     let good = ghost::ghost::<f64>().sample(Duration::from_millis(4321));
@@ -169,6 +174,7 @@ fn clik() {
             errors += usize::from(none("damped", || damped.step(&robot, q, &reference)).is_err());
             errors += usize::from(none("pseudo-inverse, w", || climb.step(&robot, q, &reference)).is_err());
             errors += usize::from(none("pseudo-inverse, range", || range.step(&robot, q, &reference)).is_err());
+            errors += usize::from(none("limited", || limited.step(&robot, &state, &reference)).is_err());
             errors += usize::from(none("second order", || second.step(&robot, &state, &reference)).is_err());
             errors += usize::from(none("second order, damped", || second_damped.step(&robot, &state, &reference)).is_err());
         }

@@ -2,7 +2,7 @@
 
 use crate::common::chain::{self, Chain, PANDA_LIMITS, SCARA_LIMITS, UR5_LIMITS};
 use crate::timing::{line, one_joint, random, random_path, with_timing};
-use armgen_runtime::timing::{Command, Ends, Governed, Governor, Limits, Phase, Timing};
+use armgen_runtime::timing::{Command, Ends, Governed, Governor, JointPath, Limits, Phase, Piece, Timing};
 use std::time::Duration;
 
 /// The limits of a test: speed, torque.
@@ -182,5 +182,62 @@ fn a_stop_keeps_the_arm_and_a_resume_goes_on() {
         let end = governor.advance(Duration::from_secs(60), Command::Override(1.0));
         assert_eq!(end.phase, Phase::Ended);
         assert!((end.reference.q - timing.sample(timing.duration()).q).amax() < 1e-12);
+    });
+}
+
+/// After a contact: the arm stops, goes back along the path by a third of a unit, and stops. Coulomb friction turns with q', so the way back
+/// has a timing of its own.
+#[test]
+fn an_arm_retreats_along_its_path() {
+    let (chain, bounds) = (chain::ur5(), UR5_LIMITS);
+    let path = random_path(&mut random(11), [3.0; 6]);
+    let whole = path.pieces().last().map_or(0.0, Piece::end);
+    let back = path.pieces().iter().rev().map(|piece| piece.reversed(whole - piece.end())).collect::<Vec<_>>();
+    for s in [0.0, 0.3, 0.77, 1.0].map(|part| part * whole) {
+        let there = path.pieces().iter().rev().find(|piece| piece.start <= s).expect("on the path").at(s);
+        let s = whole - s;
+        let here = back.iter().rev().find(|piece| piece.start <= s).expect("on the path").at(s);
+        assert!((here.q - there.q).amax() < 1e-12 && (here.slope + there.slope).amax() < 1e-11);
+        assert!((here.curvature - there.curvature).amax() < 1e-10);
+    }
+    let back = JointPath::new(back).expect("a path");
+    let ends = Ends { hold: false, ..Ends::at_rest() };
+    let step = Duration::from_millis(1);
+    let stops: Vec<Governed<f64, 6>> = with_timing(&chain, &path, &limits(bounds), ends, 1e-3, 1000, |timing| {
+        let timing = timing.expect("a timing");
+        let mut storage = vec![[0.0; 2]; timing.segments()];
+        (1..20)
+            .map(|part| {
+                let mut governor = Governor::new(&timing, &mut storage).expect("an interval for each segment");
+                governor.advance(timing.duration() * part / 20, Command::Override(1.0));
+                governor.advance(Duration::from_secs(5), Command::Stop)
+            })
+            .filter(|stopped| stopped.phase == Phase::Held)
+            .collect()
+    });
+    assert!(stops.len() > 10, "{} stops", stops.len());
+    with_timing(&chain, &back, &limits(bounds), ends, 1e-3, 1000, |timing| {
+        let timing = timing.expect("a timing");
+        let mut storage = vec![[0.0; 2]; timing.segments()];
+        for stopped in stops {
+            let begin = whole - stopped.progress.s;
+            let mut governor = Governor::from_rest(&timing, &mut storage, begin).expect("on the path");
+            let rest = governor.sample();
+            assert!(rest.phase == Phase::Held && (rest.reference.q - stopped.reference.q).amax() < 1e-9, "{rest:?}");
+            let mut moved = 0.0;
+            for sample in 0.. {
+                let at = governor.advance(step, if moved < 0.3 { Command::Override(0.5) } else { Command::Stop });
+                let most = share(&chain, bounds, &at);
+                assert!(most <= 1.0 + 1e-9, "from {begin}, sample {sample} at {at:?}: {most}");
+                moved = at.progress.s - begin;
+                if moved > 0.3 && matches!(at.phase, Phase::Held | Phase::Ended) || at.phase == Phase::Ended {
+                    break;
+                }
+                assert!(sample < 20_000, "no way back from {begin}: {at:?}");
+            }
+        }
+        for nowhere in [-0.1, whole + 0.1, f64::NAN] {
+            assert!(Governor::from_rest(&timing, &mut storage, nowhere).is_none());
+        }
     });
 }

@@ -111,7 +111,7 @@ fn against_exact<const N: usize, const R: usize>(count: usize, seed: u64) {
         let g = SVector::<f64, N>::from_fn(|i, _| exact.g[i] as f64);
         let rows = SMatrix::<f64, R, N>::from_fn(|i, k| exact.rows[i][k] as f64);
         let bounds = SVector::<f64, R>::from_fn(|i, _| exact.bounds[i] as f64);
-        match (exact.optimum(), quadratic_program(&h, &g, &rows, &bounds)) {
+        match (exact.optimum(), quadratic_program(&h, &g, &[rows], &[bounds])) {
             (Some((x, _)), Ok(found)) => {
                 solved += 1;
                 let size = 1.0 + x.iter().fold(0.0f64, |a, x| a.max(x.value().abs()));
@@ -122,7 +122,7 @@ fn against_exact<const N: usize, const R: usize>(count: usize, seed: u64) {
                 assert!(found.residual < 1e-13, "program {number}: {}", found.residual);
                 check_signs(&found);
             }
-            (None, Err(NoOptimum::Infeasible { conflict })) => {
+            (None, Err(NoOptimum::Infeasible { conflict: [conflict] })) => {
                 without += 1;
                 check_conflict(&rows, &bounds, &conflict);
             }
@@ -133,9 +133,9 @@ fn against_exact<const N: usize, const R: usize>(count: usize, seed: u64) {
     assert!(solved > count / 8 && without > count / 50, "both kinds are there: {solved}, {without}");
 }
 
-fn check_signs<const N: usize, const R: usize>(found: &Optimum<f64, N, R>) {
+fn check_signs<const N: usize, const R: usize>(found: &Optimum<f64, N, R, 1>) {
     for i in 0..R {
-        assert!(found.multipliers[i] >= 0.0 && (found.active[i] || found.multipliers[i] == 0.0), "{found:?}");
+        assert!(found.multipliers[0][i] >= 0.0 && (found.active[0][i] || found.multipliers[0][i] == 0.0), "{found:?}");
     }
 }
 
@@ -161,26 +161,30 @@ fn special_programs() {
     let g = vector![-1.0, -1.0];
     // Equal rows, a row of zeros that every point keeps, a bound that never acts.
     let rows = matrix![-1.0, 0.0; -1.0, 0.0; 0.0, 0.0; 0.0, 1.0];
-    let found = quadratic_program(&h, &g, &rows, &vector![-0.5, -0.5, -1.0, f64::NEG_INFINITY]).unwrap();
+    let found = quadratic_program(&h, &g, &[rows], &[vector![-0.5, -0.5, -1.0, f64::NEG_INFINITY]]).unwrap();
     assert_eq!((found.x, found.residual), (vector![0.5, 1.0], 0.0));
-    assert_eq!(found.multipliers.sum(), 0.5);
+    assert_eq!(found.multipliers[0].sum(), 0.5);
     // A row of zeros that no point keeps is its own conflict.
-    let Err(NoOptimum::Infeasible { conflict }) = quadratic_program(&h, &g, &rows, &vector![-0.5, -0.5, 1.0, 0.0]) else {
+    let Err(NoOptimum::Infeasible { conflict: [conflict] }) =
+        quadratic_program(&h, &g, &[rows], &[vector![-0.5, -0.5, 1.0, 0.0]])
+    else {
         panic!()
     };
     assert_eq!(conflict, vector![0.0, 0.0, 1.0, 0.0]);
     // A set of a single point, at a vertex of all four rows: the third must leave nothing.
     let rows = matrix![1.0, 0.0; -1.0, 0.0; 0.0, 1.0; 0.0, -1.0];
-    let found = quadratic_program(&h, &g, &rows, &vector![0.25, -0.25, 3.0, -3.0]).unwrap();
+    let found = quadratic_program(&h, &g, &[rows], &[vector![0.25, -0.25, 3.0, -3.0]]).unwrap();
     assert!((found.x - vector![0.25, 3.0]).amax() < 1e-15 && found.residual < 1e-15);
-    let Err(NoOptimum::Infeasible { conflict }) = quadratic_program(&h, &g, &rows, &vector![0.25, -0.2, 3.0, -3.0]) else {
+    let Err(NoOptimum::Infeasible { conflict: [conflict] }) =
+        quadratic_program(&h, &g, &[rows], &[vector![0.25, -0.2, 3.0, -3.0]])
+    else {
         panic!()
     };
     assert_eq!(conflict, vector![1.0, 1.0, 0.0, 0.0]);
     let flat = matrix![1.0, 1.0; 1.0, 1.0];
-    assert_eq!(quadratic_program(&flat, &g, &rows, &vector![0.0, 0.0, 0.0, 0.0]), Err(NoOptimum::NotConvex));
-    assert_eq!(quadratic_program(&h, &g, &rows, &vector![0.0, f64::NAN, 0.0, 0.0]), Err(NoOptimum::NotFinite));
-    assert_eq!(quadratic_program(&h, &g, &rows, &vector![0.0, f64::INFINITY, 0.0, 0.0]), Err(NoOptimum::NotFinite));
+    assert_eq!(quadratic_program(&flat, &g, &[rows], &[vector![0.0, 0.0, 0.0, 0.0]]), Err(NoOptimum::NotConvex));
+    assert_eq!(quadratic_program(&h, &g, &[rows], &[vector![0.0, f64::NAN, 0.0, 0.0]]), Err(NoOptimum::NotFinite));
+    assert_eq!(quadratic_program(&h, &g, &[rows], &[vector![0.0, f64::INFINITY, 0.0, 0.0]]), Err(NoOptimum::NotFinite));
 }
 
 /// H = A' diag(10^e) A with e from 0 to -6; rows that keep a point of their own. The largest residual and number of steps.
@@ -195,7 +199,7 @@ fn random<const N: usize, const R: usize>(count: usize, seed: u64) -> (f64, u32)
         let rows = SMatrix::<f64, R, N>::from_fn(|_, _| noise.normal());
         let kept = SVector::<f64, N>::from_fn(|_, _| noise.normal());
         let bounds = rows * kept - SVector::<f64, R>::from_fn(|_, _| noise.uniform() * noise.uniform());
-        let found = quadratic_program(&h, &g, &rows, &bounds).unwrap_or_else(|error| panic!("program {number}: {error}"));
+        let found = quadratic_program(&h, &g, &[rows], &[bounds]).unwrap_or_else(|error| panic!("program {number}: {error}"));
         check_signs(&found);
         residual = residual.max(found.residual);
         steps = steps.max(found.steps);
@@ -233,7 +237,7 @@ fn programs_in_single_precision() {
         let g = SVector::<f32, 4>::from_fn(|_, _| noise.normal() as f32);
         let rows = SMatrix::<f32, 12, 4>::from_fn(|_, _| noise.normal() as f32);
         let bounds = SVector::<f32, 12>::from_fn(|_, _| -noise.uniform() as f32);
-        worst = worst.max(quadratic_program(&h, &g, &rows, &bounds).unwrap().residual);
+        worst = worst.max(quadratic_program(&h, &g, &[rows], &[bounds]).unwrap().residual);
     }
     // Rows are kept to 1e-5 of the terms at the unconstrained optimum, and the residual counts at least sqrt(1e-5) of these.
     assert!(worst < 3.2e-3, "{worst}");

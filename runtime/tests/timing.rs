@@ -466,3 +466,39 @@ fn samples_follow_the_law_and_end_at_the_end() {
         }
     });
 }
+
+/// Where q'' jumps, u may jump, too: each side of the knot bounds x by itself. Two slides of 1 kg, across each other, with 1 N each; on the
+/// motion x = 1 + 1/(2 q_2'^2) the second motor gives all of its force, in both directions in turn.
+#[test]
+fn a_jump_of_curvature_bounds_each_side_by_itself() {
+    let slide = |alpha: f64, mass: f64| chain::Row {
+        slides: true,
+        a: 0.0,
+        alpha,
+        d: 0.0,
+        theta: 0.0,
+        mass,
+        com: [0.0; 3],
+        inertia: [0.0; 6],
+        rotor: [0.0; 2],
+        friction: JointFriction::default(),
+    };
+    let crane = Chain::new([slide(std::f64::consts::FRAC_PI_2, 0.0), slide(0.0, 1.0)], [0.0; 3]);
+    let piece = |start: f64, [from, slope, curvature]: [f64; 3]| {
+        let mut piece = Piece::line(start, 0.2, [start, 0.0], [start + 0.2, 0.0]);
+        for (to, c) in piece.coefficients.iter_mut().zip([from, slope, 0.5 * curvature]) {
+            to[1] = c;
+        }
+        piece
+    };
+    let path = JointPath::new(vec![piece(0.0, [0.0, 0.8, 1.0]), piece(0.2, [0.18, 1.0, -1.0])]).expect("a path");
+    let limits = Limits::velocity([10.0; 2]).unwrap().with_effort([-1.0; 2], [1.0; 2]).unwrap();
+    let x = |s: f64| 1.0 + 0.5 / if s < 0.2 { (0.8 + s) * (0.8 + s) } else { (1.2 - s) * (1.2 - s) };
+    let ends = Ends { speed: [x(0.0).sqrt(), x(0.4).sqrt()], ..Ends::at_rest() };
+    let possible: f64 = (0..4000).map(|i| 1e-4 / x((f64::from(i) + 0.5) * 1e-4).sqrt()).sum();
+    with_timing(&crane, &path, &limits, ends, 1e-3, 1000, |timing| {
+        let timing = timing.expect("a timing");
+        println!("possible in {possible}, at least {}, found {}", timing.lower_bound(), timing.seconds());
+        assert!(timing.lower_bound() <= possible * (1.0 + 1e-7) && timing.gap() < 2e-3);
+    });
+}

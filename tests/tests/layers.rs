@@ -75,7 +75,7 @@ const RUNTIME: Layers = &[
     ("trajectory", &["linalg", "orientation", "reference", "scalar"]),
     ("clik", &["linalg", "manipulability", "settings", "reference", "robot", "task"]),
     ("timing", &["linalg", "reference", "robot", "scalar", "settings", "trajectory"]),
-    ("control", &["linalg", "orientation", "settings", "reference", "robot", "task"]),
+    ("control", &["clik", "linalg", "orientation", "settings", "reference", "robot", "task"]),
     ("contact", &["control", "linalg", "reference", "robot", "settings"]),
     ("payload", &["control", "linalg", "reference", "robot", "settings"]),
     ("simulation", &["linalg", "reference", "robot"]),

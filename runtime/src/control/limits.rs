@@ -24,6 +24,11 @@ impl<T: RealField + Copy, const N: usize> TorqueLimits<T, N> {
         Ok(Self { bound })
     }
 
+    /// The limits.
+    pub(super) fn bound(&self) -> &SVector<T, N> {
+        &self.bound
+    }
+
     /// `tau` within the limits.
     pub fn apply(&self, tau: &SVector<T, N>) -> Limited<T, N> {
         saturate(tau, &self.bound)

@@ -26,7 +26,7 @@ use crate::{
     settings::{self, Setting, SettingError},
     task::Task,
 };
-use nalgebra::{RealField, SVector};
+use nalgebra::{RealField, SMatrix, SVector};
 
 /// Joint accelerations in the null space of the task: y_0 = K_N (q_N - q) - D_N dq.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -82,6 +82,13 @@ pub struct OperationalSpace<T, const N: usize, const M: usize> {
     pub(crate) damping: Option<Damping<T>>,
     pub(crate) null_space: Option<NullSpace<T, N>>,
     pub(crate) limits: Option<TorqueLimits<T, N>>,
+}
+
+/// J ddq = a for the error e.
+pub(super) struct Demand<T, const N: usize, const M: usize> {
+    pub(super) j: SMatrix<T, M, N>,
+    pub(super) a: SVector<T, M>,
+    pub(super) e: SVector<T, M>,
 }
 
 impl<T: RealField + Copy, const N: usize, const M: usize> OperationalSpace<T, N, M> {
@@ -157,19 +164,10 @@ impl<T: RealField + Copy, const N: usize, const M: usize> OperationalSpace<T, N,
         reference: &OperationalReference<T>,
         measured: &State<T, N>,
     ) -> Result<Torque<T, N>, ControlError> {
-        check(measured, reference.is_finite())?;
-        let j = self.task.jacobian(&model.geometric_jacobian(&measured.q));
-        let dj = self.task.jacobian(&model.geometric_jacobian_dot(&measured.q, &measured.dq));
-        let e = self.task.error(&reference.pose, &Pose::of(model, &measured.q));
-        let de = self.task.select(&reference.velocity) - j * measured.dq;
+        let Demand { j, a, e } = self.demand(model, reference, measured)?;
         let y_0 = self.null_space.map_or_else(SVector::zeros, |null_space| null_space.acceleration(measured));
-        let a = self.task.select(&reference.acceleration)
-            + self.k_d.component_mul(&de)
-            + self.k_p.component_mul(&e)
-            + self.k_i.component_mul(&self.integral)
-            - dj * measured.dq
-            // J^+ (a - J y_0) + y_0 is the law above, and stays it with a damped inverse.
-            - j * y_0;
+        // J^+ (a - J y_0) + y_0 is the law above, and stays it with a damped inverse.
+        let a = a - j * y_0;
         let (y, damped) = match &self.damping {
             None => (RightInverse::new(&j).ok_or(ControlError::Singular)?.solve(&a), false),
             Some(damping) => {
@@ -182,7 +180,28 @@ impl<T: RealField + Copy, const N: usize, const M: usize> OperationalSpace<T, N,
         Ok(torque)
     }
 
-    fn advance(&mut self, e: &SVector<T, M>, limited: bool) -> Result<(), ControlError> {
+    /// What the law asks of the task rows at this sample.
+    pub(super) fn demand<R: Dynamics<N, Real = T>>(
+        &self,
+        model: &R,
+        reference: &OperationalReference<T>,
+        measured: &State<T, N>,
+    ) -> Result<Demand<T, N, M>, ControlError> {
+        check(measured, reference.is_finite())?;
+        let j = self.task.jacobian(&model.geometric_jacobian(&measured.q));
+        let dj = self.task.jacobian(&model.geometric_jacobian_dot(&measured.q, &measured.dq));
+        let e = self.task.error(&reference.pose, &Pose::of(model, &measured.q));
+        let de = self.task.select(&reference.velocity) - j * measured.dq;
+        let a = self.task.select(&reference.acceleration)
+            + self.k_d.component_mul(&de)
+            + self.k_p.component_mul(&e)
+            + self.k_i.component_mul(&self.integral)
+            - dj * measured.dq;
+        Ok(Demand { j, a, e })
+    }
+
+    /// The step of the integral, with anti-windup where the law was `limited`.
+    pub(super) fn advance(&mut self, e: &SVector<T, M>, limited: bool) -> Result<(), ControlError> {
         let step = e * self.period;
         let next = SVector::from_fn(|i, _| {
             let (before, after) = (self.integral[i], self.integral[i] + step[i]);

@@ -22,13 +22,13 @@ const MOST_ROUNDS: usize = 3;
 
 /// An optimum.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Optimum<T, const N: usize, const R: usize> {
+pub struct Optimum<T, const N: usize, const R: usize, const K: usize> {
     /// The unknowns x.
     pub x: SVector<T, N>,
-    /// The multipliers u >= 0 of H x + g = C' u, row by row; zero in rows that are not active.
-    pub multipliers: SVector<T, R>,
+    /// The multipliers u >= 0 of H x + g = C' u, block by block and row by row; zero in rows that are not active.
+    pub multipliers: [SVector<T, R>; K],
     /// Which rows are active: c_i' x = b_i.
-    pub active: [bool; R],
+    pub active: [[bool; R]; K],
     /// The largest of the errors of stationarity, feasibility and complementarity, each divided by the size of its terms.
     pub residual: T,
     /// Rows added and removed.
@@ -38,7 +38,7 @@ pub struct Optimum<T, const N: usize, const R: usize> {
 /// Why there is no optimum.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
-pub enum NoOptimum<T, const N: usize, const R: usize> {
+pub enum NoOptimum<T, const N: usize, const R: usize, const K: usize> {
     /// A number is infinite or NaN; a bound may be minus infinity, which never acts.
     NotFinite,
     /// H is not positive definite.
@@ -46,16 +46,16 @@ pub enum NoOptimum<T, const N: usize, const R: usize> {
     /// No x keeps all rows.
     Infeasible {
         /// y >= 0 with C' y = 0 and b' y > 0: the sum of the rows, so weighted, has no solution. Zero in rows without a part in it.
-        conflict: SVector<T, R>,
+        conflict: [SVector<T, R>; K],
     },
     /// A hundred and twenty steps did not suffice.
     Limit {
         /// The last iterate. It violates a row.
-        last: Optimum<T, N, R>,
+        last: Optimum<T, N, R, K>,
     },
 }
 
-impl<T, const N: usize, const R: usize> core::fmt::Display for NoOptimum<T, N, R> {
+impl<T, const N: usize, const R: usize, const K: usize> core::fmt::Display for NoOptimum<T, N, R, K> {
     fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
         f.write_str(match self {
             NoOptimum::NotFinite => "a number of the quadratic program is infinite or NaN",
@@ -66,7 +66,10 @@ impl<T, const N: usize, const R: usize> core::fmt::Display for NoOptimum<T, N, R
     }
 }
 
-impl<T: core::fmt::Debug, const N: usize, const R: usize> core::error::Error for NoOptimum<T, N, R> {}
+impl<T: core::fmt::Debug, const N: usize, const R: usize, const K: usize> core::error::Error for NoOptimum<T, N, R, K> {}
+
+/// The place of a row: its block, and its number there.
+type Place = (usize, usize);
 
 /// The active rows and the factors that belong to them.
 struct Active<T, const N: usize> {
@@ -75,7 +78,7 @@ struct Active<T, const N: usize> {
     /// R, upper triangular; its first `count` columns count.
     r: SMatrix<T, N, N>,
     /// The rows, by their places in the program, and their multipliers.
-    rows: [usize; N],
+    rows: [Place; N],
     multipliers: SVector<T, N>,
     count: usize,
 }
@@ -108,7 +111,7 @@ impl<T: RealField + Copy, const N: usize> Active<T, N> {
     }
 
     /// Adds `row`, whose J' c is `d`: rotations that clear `d` below the new column of R.
-    fn add(&mut self, row: usize, multiplier: T, mut d: SVector<T, N>) {
+    fn add(&mut self, row: Place, multiplier: T, mut d: SVector<T, N>) {
         let count = self.count;
         for k in (0..N).rev() {
             if k >= count && k + 1 < N {
@@ -198,38 +201,42 @@ fn tolerance<T: RealField + Copy>() -> T {
 }
 
 /// A program, with the sizes of its numbers.
-struct Program<'a, T, const N: usize, const R: usize> {
+struct Program<'a, T, const N: usize, const R: usize, const K: usize> {
     h: &'a SMatrix<T, N, N>,
     g: &'a SVector<T, N>,
-    rows: &'a SMatrix<T, R, N>,
-    bounds: &'a SVector<T, R>,
+    rows: &'a [SMatrix<T, R, N>; K],
+    bounds: &'a [SVector<T, R>; K],
     /// The size of x: its largest element since it was refined last.
     size: T,
     /// The largest element of x on its whole way, the unconstrained optimum included.
     largest: T,
 }
 
-impl<T: RealField + Copy, const N: usize, const R: usize> Program<'_, T, N, R> {
-    fn row(&self, row: usize) -> SVector<T, N> {
+impl<T: RealField + Copy, const N: usize, const R: usize, const K: usize> Program<'_, T, N, R, K> {
+    fn row(&self, (block, row): Place) -> SVector<T, N> {
         let mut c = SVector::zeros();
-        for i in 0..R {
-            if i == row {
-                c = self.rows.row(i).transpose();
+        if let Some(rows) = self.rows.get(block) {
+            for i in 0..R {
+                if i == row {
+                    c = rows.row(i).transpose();
+                }
             }
         }
         c
     }
 
     /// c' x - b of a row, and the size of its terms.
-    fn slack(&self, row: usize, x: &SVector<T, N>) -> (T, T) {
+    fn slack(&self, (block, row): Place, x: &SVector<T, N>) -> (T, T) {
         let (mut value, mut size) = (T::zero(), T::zero());
-        for i in 0..R {
-            if i == row {
-                value = -self.bounds[i];
-                size = self.bounds[i].abs();
-                for k in 0..N {
-                    value += self.rows[(i, k)] * x[k];
-                    size += self.rows[(i, k)].abs() * self.size;
+        if let (Some(rows), Some(bounds)) = (self.rows.get(block), self.bounds.get(block)) {
+            for i in 0..R {
+                if i == row {
+                    value = -bounds[i];
+                    size = bounds[i].abs();
+                    for k in 0..N {
+                        value += rows[(i, k)] * x[k];
+                        size += rows[(i, k)].abs() * self.size;
+                    }
                 }
             }
         }
@@ -237,15 +244,17 @@ impl<T: RealField + Copy, const N: usize, const R: usize> Program<'_, T, N, R> {
     }
 
     /// The row that `x` violates most, by the size of its terms; rows of `left_out` do not count.
-    fn most_violated(&self, x: &SVector<T, N>, left_out: &[bool; R]) -> Option<usize> {
-        let mut worst: Option<(T, usize)> = None;
-        for i in 0..R {
-            if left_out[i] || !self.bounds[i].is_finite() {
-                continue;
-            }
-            let (value, size) = self.slack(i, x);
-            if value < -(tolerance::<T>() * size) && worst.is_none_or(|(before, _)| value / size < before) {
-                worst = Some((value / size, i));
+    fn most_violated(&self, x: &SVector<T, N>, left_out: &[[bool; R]; K]) -> Option<Place> {
+        let mut worst: Option<(T, Place)> = None;
+        for k in 0..K {
+            for i in 0..R {
+                if left_out[k][i] || !self.bounds[k][i].is_finite() {
+                    continue;
+                }
+                let (value, size) = self.slack((k, i), x);
+                if value < -(tolerance::<T>() * size) && worst.is_none_or(|(before, _)| value / size < before) {
+                    worst = Some((value / size, (k, i)));
+                }
             }
         }
         worst.map(|(_, row)| row)
@@ -289,9 +298,9 @@ impl<T: RealField + Copy, const N: usize, const R: usize> Program<'_, T, N, R> {
     }
 
     /// `x` with its residual.
-    fn optimum(mut self, x: SVector<T, N>, active: &Active<T, N>, steps: u32) -> Optimum<T, N, R> {
+    fn optimum(mut self, x: SVector<T, N>, active: &Active<T, N>, steps: u32) -> Optimum<T, N, R, K> {
         self.shrink(&x);
-        let (mut multipliers, mut is_active) = (SVector::<T, R>::zeros(), [false; R]);
+        let (mut multipliers, mut is_active) = ([SVector::<T, R>::zeros(); K], [[false; R]; K]);
         let mut size = self.g.amax();
         for k in 0..N {
             if k < active.count {
@@ -299,42 +308,55 @@ impl<T: RealField + Copy, const N: usize, const R: usize> Program<'_, T, N, R> {
                 // Refinement may leave a multiplier of zero a rounding below it.
                 let u = active.multipliers[k].max(T::zero());
                 size = size.max(self.row(row).amax() * u);
-                if let (Some(multiplier), Some(is_active)) = (multipliers.as_mut_slice().get_mut(row), is_active.get_mut(row)) {
-                    (*multiplier, *is_active) = (u, true);
+                if let (Some(multiplier), Some(is_active)) = (at(&mut multipliers, row), is_active.get_mut(row.0)) {
+                    *multiplier = u;
+                    if let Some(is_active) = is_active.get_mut(row.1) {
+                        *is_active = true;
+                    }
                 }
             }
         }
         for i in 0..N {
             size = size.max(self.h.row(i).iter().fold(T::zero(), |sum, h| sum + h.abs()) * self.size);
         }
-        let gradient = self.h * x + self.g - self.rows.tr_mul(&multipliers);
+        let mut gradient = self.h * x + self.g;
+        for (rows, multipliers) in self.rows.iter().zip(&multipliers) {
+            gradient -= rows.tr_mul(multipliers);
+        }
         let relative = |value: T, size: T| if value > T::zero() { value / size } else { T::zero() };
         let mut residual = relative(gradient.amax(), size);
-        for i in 0..R {
-            if self.bounds[i].is_finite() {
-                let (slack, size) = self.slack(i, &x);
-                residual = residual.max(relative(if is_active[i] { slack.abs() } else { -slack }, size));
+        for k in 0..K {
+            for i in 0..R {
+                if self.bounds[k][i].is_finite() {
+                    let (slack, size) = self.slack((k, i), &x);
+                    residual = residual.max(relative(if is_active[k][i] { slack.abs() } else { -slack }, size));
+                }
             }
         }
         Optimum { x, multipliers, active: is_active, residual, steps }
     }
 }
 
-/// The optimum of 1/2 x' H x + g' x over c_i' x >= b_i, with C the `rows`, R x N, and b the `bounds`.
+/// The element of a row.
+fn at<T, const R: usize, const K: usize>(blocks: &mut [SVector<T, R>; K], (block, row): Place) -> Option<&mut T> {
+    blocks.get_mut(block).and_then(|block| block.as_mut_slice().get_mut(row))
+}
+
+/// The optimum of 1/2 x' H x + g' x over c_i' x >= b_i, with C the `rows`, K blocks of R x N, and b the `bounds`.
 ///
-/// H is read in its lower triangle and counts as symmetric. Of the sizes N <= 8 and R <= 4 N + 4 are tried.
+/// H is read in its lower triangle and counts as symmetric. Of the sizes N <= 8 and K R <= 4 N + 4 are tried.
 ///
 /// # Errors
 /// [`NoOptimum`].
-pub fn quadratic_program<T: RealField + Copy, const N: usize, const R: usize>(
+pub fn quadratic_program<T: RealField + Copy, const N: usize, const R: usize, const K: usize>(
     h: &SMatrix<T, N, N>,
     g: &SVector<T, N>,
-    rows: &SMatrix<T, R, N>,
-    bounds: &SVector<T, R>,
-) -> Result<Optimum<T, N, R>, NoOptimum<T, N, R>> {
+    rows: &[SMatrix<T, R, N>; K],
+    bounds: &[SVector<T, R>; K],
+) -> Result<Optimum<T, N, R, K>, NoOptimum<T, N, R, K>> {
     // Minus infinity is a bound that never acts.
     let is_bound = |b: &T| b.is_finite() || *b < T::zero();
-    if !(is_finite(h) && is_finite(g) && is_finite(rows) && bounds.iter().all(is_bound)) {
+    if !(is_finite(h) && is_finite(g) && rows.iter().all(is_finite) && bounds.iter().flatten().all(is_bound)) {
         return Err(NoOptimum::NotFinite);
     }
     let factors = Cholesky::new(h).ok_or(NoOptimum::NotConvex)?;
@@ -349,9 +371,9 @@ pub fn quadratic_program<T: RealField + Copy, const N: usize, const R: usize>(
         return Err(NoOptimum::NotFinite);
     }
     let mut program = Program { h, g, rows, bounds, size: x.amax(), largest: x.amax() };
-    let mut active = Active { j, r: SMatrix::zeros(), rows: [0; N], multipliers: SVector::zeros(), count: 0 };
+    let mut active = Active { j, r: SMatrix::zeros(), rows: [(0, 0); N], multipliers: SVector::zeros(), count: 0 };
     // Rows that repeat active ones to rounding.
-    let mut left_out = [false; R];
+    let mut left_out = [[false; R]; K];
     let mut steps = 0;
     // Beside a large unconstrained optimum a row counts as kept with its roundings. Once x is refined, it is looked at again.
     for _ in 0..MOST_ROUNDS {
@@ -394,13 +416,13 @@ pub fn quadratic_program<T: RealField + Copy, const N: usize, const R: usize>(
                         active.remove(out);
                     }
                     None if is_dependent => {
-                        let mut conflict = SVector::<T, R>::zeros();
-                        if let Some(weight) = conflict.as_mut_slice().get_mut(row) {
+                        let mut conflict = [SVector::<T, R>::zeros(); K];
+                        if let Some(weight) = at(&mut conflict, row) {
                             *weight = T::one();
                         }
                         for k in 0..N {
                             if k < active.count {
-                                if let Some(weight) = conflict.as_mut_slice().get_mut(active.rows[k]) {
+                                if let Some(weight) = at(&mut conflict, active.rows[k]) {
                                     *weight = -falls[k];
                                 }
                             }
@@ -409,7 +431,7 @@ pub fn quadratic_program<T: RealField + Copy, const N: usize, const R: usize>(
                             return Err(NoOptimum::Infeasible { conflict });
                         }
                         // Violated by rounding alone.
-                        if let Some(is_out) = left_out.get_mut(row) {
+                        if let Some(is_out) = left_out.get_mut(row.0).and_then(|block| block.get_mut(row.1)) {
                             *is_out = true;
                         }
                         break;
@@ -437,14 +459,16 @@ pub fn quadratic_program<T: RealField + Copy, const N: usize, const R: usize>(
     Ok(program.optimum(x, &active, steps))
 }
 
-impl<T: RealField + Copy, const N: usize, const R: usize> Program<'_, T, N, R> {
+impl<T: RealField + Copy, const N: usize, const R: usize, const K: usize> Program<'_, T, N, R, K> {
     /// Whether b' y > 0 beyond rounding for y >= 0 of C' y = 0.
-    fn is_conflict(&self, y: &SVector<T, R>) -> bool {
+    fn is_conflict(&self, y: &[SVector<T, R>; K]) -> bool {
         let (mut sum, mut size) = (T::zero(), T::zero());
-        for i in 0..R {
-            if y[i] > T::zero() {
-                sum += y[i] * self.bounds[i];
-                size += y[i] * self.bounds[i].abs();
+        for (y, bounds) in y.iter().zip(self.bounds) {
+            for i in 0..R {
+                if y[i] > T::zero() {
+                    sum += y[i] * bounds[i];
+                    size += y[i] * bounds[i].abs();
+                }
             }
         }
         sum > size * tolerance()

@@ -188,14 +188,24 @@ impl<T: RealField + Copy> Damping<T> {
         self.threshold
     }
 
+    /// lambda of the factors of a Jacobian; `None` where w >= w_0.
+    fn lambda<const M: usize, const N: usize>(&self, (factors, full_rank): &(RightInverse<T, M, N>, bool)) -> Option<T> {
+        let w = if *full_rank { factors.volume() } else { T::zero() };
+        // Not `w < ...`: a NaN is damped, and found by its solution.
+        (!(w >= self.threshold)).then(|| self.factor * (T::one() - w / self.threshold))
+    }
+
+    /// lambda at `j`, 0 where damping is not active.
+    pub(crate) fn at<const M: usize, const N: usize>(&self, j: &SMatrix<T, M, N>) -> T {
+        self.lambda(&RightInverse::factor(j)).unwrap_or_else(T::zero)
+    }
+
     /// J+ v, damped where w < w_0; `None` only where J, v or the result is not finite.
     pub fn solve<const M: usize, const N: usize>(&self, j: &SMatrix<T, M, N>, v: &SVector<T, M>) -> Option<Solution<T, N>> {
-        let (factors, full_rank) = RightInverse::factor(j);
-        let w = if full_rank { factors.volume() } else { T::zero() };
-        if w >= self.threshold {
-            return Some(Solution { x: factors.solve(v), damped: false });
-        }
-        let lambda = self.factor * (T::one() - w / self.threshold);
+        let factors = RightInverse::factor(j);
+        let Some(lambda) = self.lambda(&factors) else {
+            return Some(Solution { x: factors.0.solve(v), damped: false });
+        };
         let x = RightInverse::damped(j, lambda).solve(v);
         super::is_finite(&x).then_some(Solution { x, damped: true })
     }

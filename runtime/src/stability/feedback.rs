@@ -7,7 +7,7 @@
 
 use super::{difference::derivative, rest::rest};
 use crate::{
-    control::{Adaptive, InverseDynamics, OperationalSpace, PdGravity, Robust},
+    control::{Adaptive, InverseDynamics, Limited, OperationalSpace, PdGravity, Robust},
     linalg::{lit, RightInverse},
     reference::Pose,
     robot::{Dynamics, Regressor},
@@ -357,6 +357,23 @@ impl<R: Dynamics<N>, const N: usize, const M: usize> Linearise<R, N> for Operati
             state_by_velocity: DMatrix::zeros(rows.len(), N),
             free: [false; N],
         })
+    }
+}
+
+/// The law where no limit acts. How it meets a limit is no matter of a linearisation.
+impl<R: Dynamics<N>, const N: usize, const M: usize> Linearise<R, N> for Limited<R::Real, N, M> {
+    fn linearise(&self, model: &R, q: &SVector<R::Real, N>) -> Option<Feedback<R::Real, N>> {
+        self.law.linearise(model, q)
+    }
+}
+
+impl<P, R, const N: usize, const M: usize> LineariseAtRest<P, R, N> for Limited<R::Real, N, M>
+where
+    P: Dynamics<N>,
+    R: Dynamics<N, Real = P::Real>,
+{
+    fn settle(&self, plant: &P, model: &R, reference: &SVector<R::Real, N>) -> Option<Rest<R::Real, N>> {
+        self.law.settle(plant, model, reference)
     }
 }
 

@@ -111,6 +111,26 @@ impl<'a, T: RealField + Copy, const N: usize> Governor<'a, T, N> {
         Some(governor)
     }
 
+    /// The same at rest at `s`, where the arm stopped on this path or on its way back; `None` where s is not on the path, too.
+    ///
+    /// A way from rest inside a segment is searched, not proved to be there: where there is none, the arm stays held.
+    pub fn from_rest(timing: &Timing<'a, T, N>, storage: &'a mut [[T; 2]], s: T) -> Option<Self> {
+        let segments = timing.all();
+        let index = segments.partition_point(|segment| segment.start <= s).checked_sub(1)?;
+        let segment = segments.get(index).filter(|segment| s <= segment.end())?;
+        let mut governor = Self::new(timing, storage)?;
+        (governor.command, governor.phase) = (Command::Stop, Phase::Held);
+        (governor.segment, governor.from) = (index, (s - segment.start) / segment.length);
+        // Within rounding of its end the next segment begins.
+        if governor.from > lit(1.0 - 1e-6) {
+            (governor.segment, governor.from) = (index + 1, T::zero());
+            if governor.segment >= segments.len() {
+                governor.phase = Phase::Ended;
+            }
+        }
+        Some(governor)
+    }
+
     /// The motion a time `period` later, under a command.
     pub fn advance(&mut self, period: Duration, command: Command<T>) -> Governed<T, N> {
         if command != self.command {
@@ -169,7 +189,7 @@ impl<'a, T: RealField + Copy, const N: usize> Governor<'a, T, N> {
         let (zero, one) = (T::zero(), T::one());
         match self.phase {
             Phase::Held if self.wants_to_move() => {
-                self.plan(zero, zero, None);
+                self.plan(zero, self.from, None);
             }
             Phase::Held | Phase::Ended => {}
             Phase::Moving | Phase::GoingOn => {
@@ -251,6 +271,10 @@ impl<'a, T: RealField + Copy, const N: usize> Governor<'a, T, N> {
                 if duration.is_finite() && best.as_ref().is_none_or(|(least, ..)| off < *least) {
                     best = Some((off, duration, law, rows));
                 }
+            }
+            // Nothing is nearer: at the speed of the timed motion its own rows are the only ones.
+            if best.as_ref().is_some_and(|(off, ..)| *off == zero) {
+                break;
             }
         }
         let Some((_, duration, law, rows)) = best else { return false };

@@ -29,7 +29,8 @@ pub struct JointFriction<T> {
 
 /// Lengths and inertias of a joint and the link that it moves: no posture enters. They bound derivatives of torques along a path.
 ///
-/// A value that is too large widens bounds; a value that is too small makes them false.
+/// A value that is too large widens bounds; a value that is too small makes them false. Springs need none: along a piece their torque is a
+/// polynomial of degree 5, which the interpolation reproduces.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct LinkBound<T> {
     /// The joint that carries this one, counted from 0; `None` for the base.

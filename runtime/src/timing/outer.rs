@@ -77,25 +77,27 @@ pub(super) fn node_bound<T: RealField + Copy, const N: usize>(
             }
         }
     }
-    // A first solution tells how large u is, and so how much the errors of m count.
-    match largest(&rows, x, viscous) {
-        (NodeBound::AtMost(x), u) => {
-            for row in rows.iter_mut().flatten().flatten() {
-                row.rest += row.m_error * u * lit(2.0);
-            }
-            largest(&rows, x.max(T::zero()) * lit(1.0 + 1e-6), viscous).0
+    // u may jump at a node, as q'' and the signs of friction do: each side has an interval of its own.
+    for side in &mut rows {
+        // A first solution tells how large u is, and so how much the errors of m count.
+        let (first, u) = largest(side, x, viscous);
+        for row in side.iter_mut().flatten() {
+            row.rest += row.m_error * u * lit(2.0);
         }
-        (NodeBound::Nothing(_), u) => {
-            for row in rows.iter_mut().flatten().flatten() {
-                row.rest += row.m_error * u * lit(2.0);
-            }
-            largest(&rows, x, viscous).0
+        let from = match first {
+            NodeBound::AtMost(first) => x.min(first.max(T::zero()) * lit(1.0 + 1e-6)),
+            NodeBound::Nothing(_) => x,
+        };
+        match largest(side, from, viscous).0 {
+            NodeBound::AtMost(most) => x = most,
+            nothing @ NodeBound::Nothing(_) => return nothing,
         }
     }
+    NodeBound::AtMost(x)
 }
 
 /// Newton from the right on the width of the interval of u, and |u| there.
-fn largest<T: RealField + Copy, const N: usize>(rows: &[[[AtNode<T>; 4]; N]; 2], mut x: T, viscous: bool) -> (NodeBound<T>, T) {
+fn largest<T: RealField + Copy, const N: usize>(side: &[[AtNode<T>; 4]; N], mut x: T, viscous: bool) -> (NodeBound<T>, T) {
     // With viscous friction the width is bounded from above on [x (1 - share), x].
     let mut share = T::one();
     let mut size = T::zero();
@@ -105,31 +107,29 @@ fn largest<T: RealField + Copy, const N: usize>(rows: &[[[AtNode<T>; 4]; N]; 2],
         let mut high: (T, T, usize) = (huge(), T::zero(), 0);
         let mut least: (T, T, usize) = (-huge::<T>(), T::zero(), 0);
         let mut flat: Option<(T, usize)> = None;
-        for side in rows {
-            for (index, row) in side.iter().flatten().enumerate() {
-                if row.rest >= huge() {
-                    continue;
-                }
-                let line = if row.v > T::zero() { below } else { above };
-                let (c, rest) = (row.c + row.v * line.slope, row.rest - row.v * line.height);
-                if row.m == T::zero() {
-                    // No u helps: c x <= rest.
-                    if c * x > rest {
-                        let at = if c > T::zero() { rest / c } else { -T::one() };
-                        if flat.is_none_or(|(most, _)| at < most) {
-                            flat = Some((at, index));
-                        }
+        for (index, row) in side.iter().flatten().enumerate() {
+            if row.rest >= huge() {
+                continue;
+            }
+            let line = if row.v > T::zero() { below } else { above };
+            let (c, rest) = (row.c + row.v * line.slope, row.rest - row.v * line.height);
+            if row.m == T::zero() {
+                // No u helps: c x <= rest.
+                if c * x > rest {
+                    let at = if c > T::zero() { rest / c } else { -T::one() };
+                    if flat.is_none_or(|(most, _)| at < most) {
+                        flat = Some((at, index));
                     }
-                    continue;
                 }
-                let (u, slope) = ((rest - c * x) / row.m, -c / row.m);
-                if row.m > T::zero() {
-                    if u < high.0 {
-                        high = (u, slope, index);
-                    }
-                } else if u > least.0 {
-                    least = (u, slope, index);
+                continue;
+            }
+            let (u, slope) = ((rest - c * x) / row.m, -c / row.m);
+            if row.m > T::zero() {
+                if u < high.0 {
+                    high = (u, slope, index);
                 }
+            } else if u > least.0 {
+                least = (u, slope, index);
             }
         }
         size = if high.0 < huge() { high.0.abs() } else { T::zero() };

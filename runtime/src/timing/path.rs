@@ -31,6 +31,22 @@ impl<T: RealField + Copy, const N: usize> Piece<T, N> {
         self.start + self.length
     }
 
+    /// The same piece run backwards, beginning at `start`.
+    ///
+    /// A path is run backwards by its pieces in the other order; the time of its way back is that of another motion, since friction turns.
+    #[must_use]
+    pub fn reversed(&self, start: T) -> Self {
+        let mut coefficients = [SVector::zeros(); ORDER];
+        for joint in 0..N {
+            let mut sign = T::one();
+            for (to, from) in coefficients.iter_mut().zip(polynomial::shifted(&self.joint(joint), self.length)) {
+                to[joint] = sign * from;
+                sign = -sign;
+            }
+        }
+        Self { start, length: self.length, coefficients }
+    }
+
     /// q, q' and q'' at `s`; s itself may be a little outside.
     pub fn at(&self, s: T) -> PathPoint<T, N> {
         let t = s - self.start;

@@ -133,18 +133,30 @@ impl<'a, T: RealField + Copy, const N: usize> Timing<'a, T, N> {
 
     /// The barrier of a segment that proves the longest time; `None` where no row gives one.
     pub fn upper_bound(&self, index: usize) -> Option<UpperBound<T>> {
-        let segment = self.segments.get(index)?;
+        let length = self.segments.get(index)?.length;
         let mut best: Option<(T, UpperBound<T>)> = None;
-        for (barrier, direction) in segment.bound.barriers.iter().zip([1, -1, 0]) {
-            let Some(barrier) = barrier else { continue };
-            let time = barrier.law.duration();
+        for bound in self.barriers(index).into_iter().flatten() {
+            let UpperBound { x: [x0, x2], k, .. } = bound;
+            let time = Law { length, x0, k, x2 }.duration();
             if time.is_finite() && best.is_none_or(|(most, _)| time > most) {
-                let (limit, joint) = limit(barrier.row, N);
-                let Law { x0, x2, k, .. } = barrier.law;
-                best = Some((time, UpperBound { direction, x: [x0, x2], k, limit, joint }));
+                best = Some((time, bound));
             }
         }
         best.map(|(_, bound)| bound)
+    }
+
+    /// The barriers of a segment of the directions 1, -1 and 0.
+    pub fn barriers(&self, index: usize) -> [Option<UpperBound<T>>; 3] {
+        let mut all = [None; 3];
+        let Some(segment) = self.segments.get(index) else { return all };
+        for ((to, barrier), direction) in all.iter_mut().zip(&segment.bound.barriers).zip([1, -1, 0]) {
+            *to = barrier.as_ref().map(|barrier| {
+                let (limit, joint) = limit(barrier.row, N);
+                let Law { x0, x2, k, .. } = barrier.law;
+                UpperBound { direction, x: [x0, x2], k, limit, joint }
+            });
+        }
+        all
     }
 
     /// s and its derivatives at a time; at rest beyond the ends, unless the motion does not rest there.

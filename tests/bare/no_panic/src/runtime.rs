@@ -6,12 +6,12 @@
 use armgen_runtime::{
     clik::{
         Algorithm, Clik, DampedLeastSquares, Integration, JacobianInverse, JacobianTranspose, JointLimits, JointRangeDistance,
-        Manipulability, NoObjective, Objective, PseudoInverse, SecondOrder,
+        Limited, LimitedSample, Manipulability, NoObjective, Objective, PseudoInverse, SecondOrder,
     },
     contact::{parameter_spread, MomentumObserver, Reaction, Threshold},
     control::{
-        Adaptive, Admittance, BoundaryLayer, Controller, FrictionCompensation, HandGuiding, Impedance, Interval, InverseDynamics,
-        NullSpace, OperationalSpace, PdGravity, Robust, TorqueLimits, Walls,
+        self, Adaptive, Admittance, BoundaryLayer, Controller, FrictionCompensation, HandGuiding, Impedance, Interval,
+        InverseDynamics, NullSpace, OperationalSpace, PdGravity, Robust, TorqueLimits, Walls,
     },
     inverse_kinematics::{follow as follow_posture, follow_redundant},
     linalg::{self, Cholesky, Damping, DampingBelow, RightInverse},
@@ -197,8 +197,8 @@ fn algebra<T: RealField + Copy, const M: usize, const N: usize>(j: &SMatrix<T, M
         keep((Cholesky::solve(&factors, &vector()), *Cholesky::factor(&factors)));
     }
     let [h, rows] = [(); 2].map(|()| SMatrix::<T, N, N>::from_fn(|_, _| number()));
-    keep(linalg::quadratic_program(&h, &vector(), &rows, &vector()));
-    keep(linalg::quadratic_program(&h, &vector(), j, &vector()));
+    keep(linalg::quadratic_program(&h, &vector(), &[rows, rows], &[vector(), vector()]));
+    keep(linalg::quadratic_program(&h, &vector(), &[*j], &[vector()]));
     keep(linalg::left_singular(j));
     keep(linalg::diagonal_lyapunov::<T, N>(&vector(), &vector(), &vector(), &vector()));
     keep((linalg::is_finite(j), linalg::saturate::<T, N>(&vector(), &vector())));
@@ -314,6 +314,21 @@ fn inverse_kinematics<R, const N: usize, const M: usize, const P: usize>(
         JointLimits::slow_down(&limits, &state.dq),
         JointLimits::stop(&limits, &state.q, &vector()),
     ));
+    let Ok(limits) = JointLimits::with_acceleration(limits, numbers()) else { return };
+    keep((
+        JointLimits::rate_bounds(&limits, state, number()),
+        JointLimits::acceleration_bounds(&limits, state, number(), number()),
+    ));
+    let limited = Limited::new(task, numbers(), number(), limits).and_then(|law| Limited::with_weights(law, numbers()));
+    if let Ok(limited) = limited {
+        for law in [limited, Limited::with_direction(Limited::with_damping(limited, damping))] {
+            keep(Limited::step(&law, robot, state, reference));
+            let sample = Limited::sample(&law, robot, state, reference);
+            if let Ok(sample) = sample.and_then(|sample| LimitedSample::then(sample, j, &vector())) {
+                keep(LimitedSample::step(&sample));
+            }
+        }
+    }
     let objective = Manipulability { task };
     keep(Objective::gradient(&objective, robot, &state.q));
     follow(
@@ -392,6 +407,11 @@ fn controllers<R, const N: usize, const M: usize, const P: usize>(
         keep(Adaptive::torque(&mut Adaptive::with_torque_limits(bounded, limits), robot, joint, state));
     }
     hands::<R, N, M, P>(robot, task, state, reference, limits);
+    let Ok(joints) = JointLimits::rates(numbers()).and_then(|joints| JointLimits::with_range(joints, numbers(), numbers()))
+    else {
+        return;
+    };
+    let Ok(joints) = JointLimits::with_acceleration(joints, numbers()) else { return };
     let operational = OperationalSpace::new(task, numbers(), numbers(), numbers(), number());
     let operational = operational.and_then(|operational| OperationalSpace::with_integral_limit(operational, numbers()));
     if let (Ok(mut operational), Ok(damping)) = (operational, Damping::below(number()).at_most(number())) {
@@ -402,6 +422,10 @@ fn controllers<R, const N: usize, const M: usize, const P: usize>(
         if let Ok(null_space) = NullSpace::new(numbers(), numbers(), numbers()) {
             let mut redundant = OperationalSpace::with_null_space(damped, null_space);
             keep(OperationalSpace::torque(&mut redundant, robot, reference, state));
+            if let Ok(mut within) = control::Limited::new(redundant, limits, joints, number(), number()) {
+                keep((control::Limited::torque(&mut within, robot, reference, state), *control::Limited::integral(&within)));
+                keep(Controller::torque(&mut within, robot, reference, state));
+            }
         }
     }
 }

@@ -34,7 +34,12 @@ pub(crate) fn every_timing<R: Dynamics<N>, const N: usize>(robot: &R) {
         PathDynamics::gravity_length(&model),
     ));
     let piece = black_box(Piece::<R::Real, N>::line(number(), number(), numbers(), numbers()));
-    keep((Piece::end(&piece), Piece::at(&piece, number()), Piece::extremes(&piece, black_box(1))));
+    keep((
+        Piece::end(&piece),
+        Piece::at(&piece, number()),
+        Piece::extremes(&piece, black_box(1)),
+        Piece::reversed(&piece, number()),
+    ));
     let Ok(path) = JointPath::new([piece; 2]) else { return };
     keep(JointPath::pieces(&path).len());
     let Ok(limits) = Limits::velocity(numbers()) else { return };
@@ -58,15 +63,23 @@ fn results<T: RealField + Copy, const N: usize>(timing: &Timing<'_, T, N>) {
         Timing::segments(timing),
     ));
     keep(Timing::at(timing, black_box(3), number()));
-    keep((Timing::profile(timing, black_box(3)), Timing::upper_bound(timing, black_box(3))));
+    keep((
+        Timing::profile(timing, black_box(3)),
+        Timing::upper_bound(timing, black_box(3)),
+        Timing::barriers(timing, black_box(3)),
+    ));
     let at = Timing::progress(timing, black_box(Duration::from_millis(7)));
     keep((Timing::reference(timing, &at), Timing::sample(timing, black_box(Duration::from_millis(7)))));
     keep((Timing::enclosure(timing, black_box(3), number()), Timing::margins(timing)));
     keep(Timing::binding(timing, black_box(3)).map(|(limit, joint, share)| (Limit::name(limit).len(), joint, share)));
     let mut storage = [[number(); 2]; 24];
-    let Some(mut governor) = Governor::new(timing, black_box(&mut storage[..])) else { return };
-    keep((Governor::sample(&governor), Governor::reachable(&governor, black_box(3))));
-    for command in black_box([Command::Override(number()), Command::Stop]) {
-        keep(Governor::advance(&mut governor, black_box(Duration::from_millis(7)), command));
+    let mut other = [[number(); 2]; 24];
+    let from_rest = Governor::from_rest(timing, black_box(&mut other[..]), number());
+    for governor in [Governor::new(timing, black_box(&mut storage[..])), from_rest] {
+        let Some(mut governor) = governor else { continue };
+        keep((Governor::sample(&governor), Governor::reachable(&governor, black_box(3))));
+        for command in black_box([Command::Override(number()), Command::Stop]) {
+            keep(Governor::advance(&mut governor, black_box(Duration::from_millis(7)), command));
+        }
     }
 }
