@@ -11,6 +11,7 @@
 //! Text enters the document escaped, or through text nodes and attributes that the script sets.
 
 mod bodies;
+mod brief;
 mod cost;
 mod document;
 mod drives;

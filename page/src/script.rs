@@ -1,7 +1,7 @@
 //! The script of a page: ES modules, a file per concept, joined into a single text.
 //!
 //! Each file becomes a function that runs once and returns the file's exports. An import reads the result of an earlier function.
-//! So there is no build step, and tests run the unmodified files. Imports and exports have a single form each:
+//! Tests run the unmodified files; the build script removes comments and indentation alone. Imports and exports have a single form each:
 //!
 //! ```text
 //! import { name, name } from "./file.mjs";
@@ -10,44 +10,53 @@
 
 use std::fmt::Write;
 
+use crate::brief::brief;
+
+/// A file of `web/` as the build script shortens it.
+macro_rules! web {
+    ($name:literal) => {
+        include_str!(concat!(env!("OUT_DIR"), "/", $name))
+    };
+}
+
 /// The files, each after the files it imports.
 const FILES: &[(&str, &str)] = &[
-    ("vector", include_str!("../web/vector.mjs")),
-    ("format", include_str!("../web/format.mjs")),
-    ("dom", include_str!("../web/dom.mjs")),
-    ("formula", include_str!("../web/formula.mjs")),
-    ("mathml", include_str!("../web/mathml.mjs")),
-    ("unpack", include_str!("../web/unpack.mjs")),
-    ("linear", include_str!("../web/linear.mjs")),
-    ("noise", include_str!("../web/noise.mjs")),
-    ("equations", include_str!("../web/equations.mjs")),
-    ("kinematics", include_str!("../web/kinematics.mjs")),
-    ("view", include_str!("../web/view.mjs")),
-    ("labels", include_str!("../web/labels.mjs")),
-    ("solids", include_str!("../web/solids.mjs")),
-    ("bodies", include_str!("../web/bodies.mjs")),
-    ("scene", include_str!("../web/scene.mjs")),
-    ("dimension", include_str!("../web/dimension.mjs")),
-    ("state", include_str!("../web/state.mjs")),
-    ("sliders", include_str!("../web/sliders.mjs")),
-    ("sticky_picture", include_str!("../web/sticky_picture.mjs")),
-    ("picture", include_str!("../web/picture.mjs")),
-    ("free_fall", include_str!("../web/free_fall.mjs")),
-    ("sheet", include_str!("../web/sheet.mjs")),
-    ("dependent_axes", include_str!("../web/dependent_axes.mjs")),
-    ("lost_motion", include_str!("../web/lost_motion.mjs")),
-    ("search", include_str!("../web/search.mjs")),
-    ("singular", include_str!("../web/singular.mjs")),
-    ("numbers", include_str!("../web/numbers.mjs")),
-    ("suspects", include_str!("../web/suspects.mjs")),
-    ("check", include_str!("../web/check.mjs")),
-    ("reach", include_str!("../web/reach.mjs")),
-    ("workspace", include_str!("../web/workspace.mjs")),
-    ("postures", include_str!("../web/postures.mjs")),
-    ("logs", include_str!("../web/logs.mjs")),
-    ("cost", include_str!("../web/cost.mjs")),
-    ("settings", include_str!("../web/settings.mjs")),
-    ("main", include_str!("../web/main.mjs")),
+    ("vector", web!("vector.mjs")),
+    ("format", web!("format.mjs")),
+    ("dom", web!("dom.mjs")),
+    ("formula", web!("formula.mjs")),
+    ("mathml", web!("mathml.mjs")),
+    ("unpack", web!("unpack.mjs")),
+    ("linear", web!("linear.mjs")),
+    ("noise", web!("noise.mjs")),
+    ("equations", web!("equations.mjs")),
+    ("kinematics", web!("kinematics.mjs")),
+    ("view", web!("view.mjs")),
+    ("labels", web!("labels.mjs")),
+    ("solids", web!("solids.mjs")),
+    ("bodies", web!("bodies.mjs")),
+    ("scene", web!("scene.mjs")),
+    ("dimension", web!("dimension.mjs")),
+    ("state", web!("state.mjs")),
+    ("sliders", web!("sliders.mjs")),
+    ("sticky_picture", web!("sticky_picture.mjs")),
+    ("picture", web!("picture.mjs")),
+    ("free_fall", web!("free_fall.mjs")),
+    ("sheet", web!("sheet.mjs")),
+    ("dependent_axes", web!("dependent_axes.mjs")),
+    ("lost_motion", web!("lost_motion.mjs")),
+    ("search", web!("search.mjs")),
+    ("singular", web!("singular.mjs")),
+    ("numbers", web!("numbers.mjs")),
+    ("suspects", web!("suspects.mjs")),
+    ("check", web!("check.mjs")),
+    ("reach", web!("reach.mjs")),
+    ("workspace", web!("workspace.mjs")),
+    ("postures", web!("postures.mjs")),
+    ("logs", web!("logs.mjs")),
+    ("cost", web!("cost.mjs")),
+    ("settings", web!("settings.mjs")),
+    ("main", web!("main.mjs")),
 ];
 
 /// Replaces the file that plays logs if the page has no logs.
@@ -68,29 +77,9 @@ pub(crate) fn script(module: &str, with_plots: bool) -> String {
     for (name, file) in FILES {
         let file = if *name == "logs" && !with_plots { WITHOUT_LOGS } else { file };
         let _ = write!(text, "const {} = ", variable(name));
-        text += &closed(&brief(file));
+        text += &closed(file);
     }
     inert(&text)
-}
-
-/// Removes comment lines (a fifth of a file), indentation (an eighth) and empty lines, which only readers of `page/web` need.
-/// Comments take half of the module that `armgen generate` writes. No string literal spans several lines, so none contains indentation.
-fn brief(file: &str) -> String {
-    let mut text = String::with_capacity(file.len());
-    let mut within = false;
-    for line in file.lines() {
-        let words = line.trim();
-        let begins = within || words.starts_with("/**");
-        let ends = words.ends_with("*/");
-        // Code may follow a comment on the same line.
-        let comment = within || words.starts_with("//") || (begins && (ends || !words.contains("*/")));
-        within = comment && begins && !ends;
-        if !comment && !words.is_empty() {
-            text.push_str(line.trim_start());
-            text.push('\n');
-        }
-    }
-    text
 }
 
 /// The variable with the exports of a file.

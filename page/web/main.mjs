@@ -34,7 +34,7 @@ logs(data, state, picture);
 state.move(home(data));
 document.documentElement.dataset.ready = String(Math.round(performance.now()));
 if (!data.equations) {
-    addEventListener("message", later);
+    addEventListener("message", heard);
     parent.postMessage({ drawn: true }, "*");
 }
 
@@ -45,15 +45,37 @@ function rest() {
     cost();
 }
 
-/** The second step, from the window around the page. @param {MessageEvent} event */
-function later({ source, data: parts }) {
-    if (source !== parent || !parts.rest) return;
-    removeEventListener("message", later);
+/** The words of the window around the page: the second step, and the posture and view that pass from a page to the next. @param {MessageEvent} event */
+function heard({ source, data: said }) {
+    if (source !== parent) return;
+    if (said.rest && !data.equations) later(said.rest);
+    if (said.leave) parent.postMessage({ left: { joints: joints(), q: state.q, dq: state.dq, ddq: state.ddq, look: picture.look() } }, "*");
+    if (said.resume) {
+        resume(said.resume);
+        parent.postMessage({ resumed: true }, "*");
+    }
+}
+
+/** What makes the joints of another text the same joints. */
+function joints() {
+    return data.rows.map(({ name, type }) => `${type} ${name}`);
+}
+
+/** Where the reader was, if the arm has the same joints; limits may have changed. */
+function resume({ joints: before, q, dq, ddq, look }) {
+    if (String(before) !== String(joints())) return;
+    Object.assign(state, { dq, ddq });
+    state.move(q.map((x, i) => Math.min(Math.max(x, data.rows[i].limits?.[0] ?? -Infinity), data.rows[i].limits?.[1] ?? Infinity)));
+    picture.lookAs(look);
+}
+
+/** The second step. */
+function later(parts) {
     for (const name of ["equations", "cost"]) {
         const place = byId(name).querySelector("[data-later]");
-        if (place) place.outerHTML = parts.rest[name];
+        if (place) place.outerHTML = parts[name];
     }
-    data.equations = parts.rest.data;
+    data.equations = parts.data;
     rest();
     state.changed("motion");
     document.documentElement.dataset.whole = String(Math.round(performance.now()));

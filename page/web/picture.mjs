@@ -267,6 +267,24 @@ export class Picture {
         this.mark();
     }
 
+    /** How the reader looks at the arm. */
+    look() {
+        const { name, azimuth, elevation, scale, centre } = this.view;
+        return { name, azimuth, elevation, zoomed: this.zoomed, scale, centre };
+    }
+
+    /** Looks at the arm as in another picture; a scale that nobody chose follows the arm. */
+    lookAs({ name, azimuth, elevation, zoomed, scale, centre }) {
+        Object.assign(this.view, { name, azimuth, elevation });
+        this.view.turn();
+        this.zoomed = zoomed;
+        this.seen = [];
+        this.draw();
+        if (zoomed) Object.assign(this.view, { scale, centre });
+        this.redraw();
+        this.mark();
+    }
+
     mark() {
         for (const button of document.querySelectorAll("button[data-view]")) {
             button.setAttribute("aria-pressed", String(button.getAttribute("data-view") === this.view.name));

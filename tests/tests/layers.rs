@@ -122,7 +122,8 @@ const EXPERIMENTS: Layers = &[
 /// Rows and bodies are numbers, documents are text; the script knows neither.
 const PAGE: Layers = &[
     ("html", &[]),
-    ("script", &[]),
+    ("brief", &[]),
+    ("script", &["brief"]),
     ("rows", &[]),
     ("bodies", &["rows"]),
     ("cost", &["html"]),

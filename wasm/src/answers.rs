@@ -119,6 +119,9 @@ fn show(request: &Value, model: &Model) -> Result<Value, String> {
     Ok(json!({ "text": sheet.text(), "latex": sheet.latex() }))
 }
 
+/// How many modules of an arm are kept: those of all languages, and the last choices of single functions.
+const KEPT: usize = 8;
+
 /// A valid arm, with what was derived of it: panes and languages share it.
 struct Arm {
     source: Source,
@@ -126,7 +129,7 @@ struct Arm {
     places: Places,
     /// The programs of all functions.
     whole: Option<Module>,
-    /// Modules by what they were made with: where sines come from, and the names of their functions.
+    /// The last [`KEPT`] modules by what they were made with: where sines come from, and the names of their functions.
     made: Vec<((Trig, Vec<String>), Generated)>,
 }
 
@@ -176,6 +179,9 @@ impl Arm {
                 let mut generated = armgen_codegen::printed(&self.source, self.model.manipulator.clone(), module);
                 // Without them the documentation is shorter.
                 let _ = armgen_certify::document_bounds(&self.source, &mut generated);
+                if self.made.len() == KEPT {
+                    self.made.remove(0);
+                }
                 self.made.push((choice, generated));
                 self.made.len() - 1
             }

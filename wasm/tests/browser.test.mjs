@@ -96,6 +96,34 @@ test("every pane shows what the program writes", async () => {
     quiet(page);
 });
 
+test("an edit keeps posture and view where the joints stay the same", async () => {
+    const page = await opened();
+    await page.until("document.documentElement.dataset.whole");
+    const tell = (words, answer) => `new Promise((done) => {
+        const frame = document.querySelector("iframe#page").contentWindow;
+        addEventListener("message", ({ source, data }) => source === frame && data.${answer} && done(data.${answer}));
+        frame.postMessage(${words}, "*");
+    })`;
+    const left = async () => {
+        const { q, look } = await page.run(tell("{ leave: true }", "left"));
+        return [q[0], look.azimuth];
+    };
+    const first = await page.run(tell("{ leave: true }", "left"));
+    assert.deepEqual([first.q[0], first.look.name], [0, "oblique"]);
+    const moved = { ...first, q: [0.5, ...first.q.slice(1)], look: { ...first.look, name: "", azimuth: 0.25 } };
+    await page.run(tell(`{ resume: ${JSON.stringify(moved)} }`, "resumed"));
+    const text = repository("robots/scara.yaml");
+    const shows = (name) => page.until(`document.querySelector("iframe#page")?.srcdoc.includes("<title>${name}</title>")`);
+    await page.run(put(text.replace(/^name: .*/m, "name: other"), "robot.yaml"));
+    await shows("other");
+    assert.deepEqual(await left(), [0.5, 0.25]);
+    // Another arm begins where every arm begins.
+    await page.run(put(repository("robots/ur5.yaml"), "ur5.yaml"));
+    await shows("ur5");
+    assert.deepEqual(await left(), [0, first.look.azimuth]);
+    quiet(page);
+});
+
 test("a link carries a text", async () => {
     const page = await opened();
     await page.run(put("name: ü\n", "ü.yaml"));

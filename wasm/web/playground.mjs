@@ -166,8 +166,12 @@ const makers = {
         made.page = own;
         const frame = html("iframe", { sandbox: "allow-scripts allow-modals", title: "The arm", class: "coming" });
         frame.srcdoc = answer.page;
+        const before = document.querySelector("iframe#page");
         byId("frames").append(frame);
-        await drawn(frame);
+        await heard(frame, "drawn");
+        // An edit keeps the posture and the view, where the joints stay the same.
+        const left = before instanceof HTMLIFrameElement ? await asked(before, { leave: true }, "left") : null;
+        if (left) await asked(frame, { resume: left }, "resumed");
         if (own !== version) return frame.remove();
         for (const other of [...byId("frames").children]) if (other !== frame) other.remove();
         frame.className = "";
@@ -223,16 +227,22 @@ function shown(id, answer) {
     byId(id).textContent = said || "there is no page of this arm";
 }
 
-/** Until a frame has drawn its arm. @param {HTMLIFrameElement} frame */
-function drawn(frame) {
+/** What a frame says under a word. @param {HTMLIFrameElement} frame @param {string} word @returns {Promise<any>} */
+function heard(frame, word) {
     return new Promise((done) => {
         const listen = ({ source, data }) => {
-            if (source !== frame.contentWindow || !data.drawn) return;
+            if (source !== frame.contentWindow || !data[word]) return;
             removeEventListener("message", listen);
-            done(undefined);
+            done(data[word]);
         };
         addEventListener("message", listen);
     });
+}
+
+/** The answer of a frame, or null from one that is too slow. @param {HTMLIFrameElement} frame @param {any} words @param {string} word */
+function asked(frame, words, word) {
+    frame.contentWindow?.postMessage(words, "*");
+    return Promise.race([heard(frame, word), new Promise((late) => setTimeout(late, 1000, null))]);
 }
 
 function showFile() {

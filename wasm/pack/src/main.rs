@@ -20,6 +20,8 @@ const SCRIPT: [&str; 7] = [
 ];
 const WORKER: &str = include_str!("../../web/worker.mjs");
 const STYLE: &str = include_str!("../../web/playground.css");
+/// The page of a robot, whose colours the playground has.
+const PAGE: &str = include_str!("../../../page/web/page.css");
 const DOCUMENT: &str = include_str!("../../web/playground.html");
 
 /// The examples; the playground begins with the first.
@@ -54,7 +56,8 @@ fn write(out: &Path, text: &str) -> std::io::Result<()> {
 fn document(module: &[u8]) -> String {
     let packed = compress_to_vec_zlib(module, 10);
     let script: String = SCRIPT.iter().map(|file| joined(file)).collect();
-    let style: String = STYLE.lines().map(str::trim_start).filter(|line| !line.starts_with("/*")).collect::<Vec<_>>().join("\n");
+    let lines = STYLE.lines().map(str::trim_start).filter(|line| !line.starts_with("/*"));
+    let style = palette() + &lines.collect::<Vec<_>>().join("\n");
     // A policy names the scripts of this file alone by it; the same input gives the same file.
     let hash = Sha256::new().chain_update(module).chain_update(&script).chain_update(WORKER).finalize();
     let nonce = base64(&hash[..12]);
@@ -70,6 +73,14 @@ fn document(module: &[u8]) -> String {
         ("PACKED", &dense(&packed)),
     ];
     parts.iter().fold(DOCUMENT.to_owned(), |document, (mark, text)| document.replace(mark, text))
+}
+
+/// The colours of the page that the style of the playground names.
+fn palette() -> String {
+    let own = PAGE.lines().map(str::trim).skip_while(|line| *line != ":root {").take_while(|line| *line != "}");
+    let named =
+        |line: &&str| !line.starts_with("--") || STYLE.contains(&format!("var({})", line.split(':').next().unwrap_or_default()));
+    own.filter(named).collect::<Vec<_>>().join("\n") + "\n}\n"
 }
 
 /// A file within the script: without imports, without the word `export`, without comments that have lines of their own.
@@ -138,7 +149,7 @@ fn base64(bytes: &[u8]) -> String {
 
 #[cfg(test)]
 mod tests {
-    use super::{base64, dense, joined, quoted, DOCUMENT, SCRIPT, WORKER};
+    use super::{base64, dense, joined, palette, quoted, DOCUMENT, SCRIPT, STYLE, WORKER};
 
     #[test]
     fn base64_is_that_of_rfc_4648() {
@@ -174,6 +185,15 @@ mod tests {
         for file in SCRIPT.iter().chain([&WORKER]) {
             assert!(!file.contains("</script") && !file.contains("<!--"));
             assert!(!joined(file).contains("\nimport ") && !joined(file).contains("\nexport "));
+        }
+    }
+
+    #[test]
+    fn every_colour_of_the_style_is_there() {
+        let style = palette() + STYLE;
+        assert!(palette().contains("--accent:") && !palette().contains("--joint-edge"), "{}", palette());
+        for used in STYLE.split("var(").skip(1).filter_map(|rest| rest.split(')').next()) {
+            assert!(style.contains(&format!("{used}:")), "{used}");
         }
     }
 
