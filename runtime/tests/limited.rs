@@ -466,13 +466,13 @@ fn without_limits_in_the_way_it_is_operational_space_control() {
 fn a_box_out_of_reach_yields_and_its_joint_is_named() {
     let model: Chain<7> = panda();
     let law = OperationalSpace::new(Task::full(), [100.0; 6], [20.0; 6], [0.0; 6], PERIOD).unwrap();
-    let effort = [87.0, 87.0, 87.0, 87.0, 12.0, 12.0, 12.0];
+    let effort = [40.0, 60.0, 40.0, 40.0, 6.0, 6.0, 6.0];
     let torques = TorqueLimits::new(effort).unwrap();
     let mut noise = Noise::new(10);
     let (mut named, mut free) = (0, 0);
     for number in 0..60 {
         let q = anywhere(&mut noise, &PANDA);
-        let acceleration = [if number % 2 == 0 { 150.0 } else { 10.0 }; 7];
+        let acceleration = [if number % 2 == 0 { 600.0 } else { 10.0 }; 7];
         let joints = of(&PANDA, 2.0).with_acceleration(acceleration).unwrap();
         let mut limited = control::Limited::new(law, torques, joints, 8e-3, 1.0).unwrap();
         // Fast towards a limit, so that the box asks for all of the acceleration.
@@ -511,5 +511,5 @@ fn a_box_out_of_reach_yields_and_its_joint_is_named() {
         }
     }
     println!("{named} conflicts, {free} without");
-    assert!(named > 0 && free > 5, "{named} {free}");
+    assert!(named > 5 && free > 5, "{named} {free}");
 }
