@@ -14,6 +14,8 @@ mod manipulability;
 mod model;
 mod operational_space;
 mod payload;
+// The page shows a part of it as a file of its own.
+#[allow(unreachable_pub)]
 mod pick_and_place;
 mod plant;
 mod quadratic_program;
