@@ -73,6 +73,8 @@ fn main() {
     Robot::new("data/kinematics_alone.yaml").generate();
     // An arm with gravity as an argument, for `tests/gravity.rs`.
     Robot::new("data/mounted.yaml").generate();
+    // An arm with several end effectors, for `tests/tips.rs`.
+    Robot::new("data/trees/two_hands.yaml").generate();
     // With inverse kinematics, for `tests/postures.rs`.
     for (robot, scalar) in POSTURES {
         let stem = Path::new(robot).file_stem().expect("a file's name").to_string_lossy();

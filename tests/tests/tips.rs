@@ -7,6 +7,10 @@ use armgen_codegen::program::{Cost, Trig};
 use armgen_codegen::schedule::{Options, Selection};
 use armgen_codegen::source::Source;
 use armgen_codegen::Generated;
+use armgen_runtime::control::PdGravity;
+use armgen_runtime::nalgebra::SVector;
+use armgen_runtime::reference::{JointReference, State};
+use armgen_runtime::robot::{Dynamics, Kinematics, OperationalInertia};
 use armgen_tests::functions::{Arguments, Functions};
 use armgen_tests::interpreter::Interpreted;
 use armgen_tests::precision::{deviation, REFERENCE};
@@ -16,6 +20,13 @@ use armgen_verify::reader::ModuleText;
 use armgen_verify::report::{Report, Verdict};
 use armgen_verify::verify_with;
 use serde_json::Value;
+
+#[allow(unreachable_pub, clippy::all, clippy::pedantic)]
+mod two_hands {
+    include!(concat!(env!("OUT_DIR"), "/two_hands.rs"));
+    include!(concat!(env!("OUT_DIR"), "/two_hands_runtime.rs"));
+}
+use two_hands::{LeftHand, LeftHandWithParameters, RightHand, RightHandMounted, DOF, NOMINAL_GRAVITY};
 
 const TWO_ARMS: &str = include_str!("../data/trees/two_arms.yaml");
 const INTERLEAVED: &str = include_str!("../data/trees/interleaved.yaml");
@@ -276,4 +287,27 @@ fn a_urdf_with_two_hands_comes_back_whole() {
             assert!(off < REFERENCE, "{own}: {off:e}\n{yaml}");
         }
     }
+}
+
+/// Each end effector has a type of its own, with its frame and the dynamics of the robot: any controller takes it.
+#[test]
+fn every_end_effector_is_a_robot_of_the_runtime() {
+    fn held<R: Dynamics<DOF, Real = f64>>(robot: &R, q: SVector<f64, DOF>) -> SVector<f64, DOF> {
+        let controller = PdGravity::new([100.0; DOF], [10.0; DOF]).expect("positive");
+        let reference = JointReference { q, dq: SVector::zeros(), ddq: SVector::zeros() };
+        controller.torque(robot, &reference, &State { q, dq: SVector::zeros() }).expect("finite").tau
+    }
+    let arguments = arguments();
+    let q: SVector<f64, DOF> = SVector::from_column_slice(&arguments.q);
+    let own: [f64; DOF] = q.into();
+    let left = LeftHand.direct_kinematics(&q);
+    assert_eq!(left[(0, 3)], two_hands::left_hand_direct_kinematics(&own)[0][3]);
+    assert_eq!(RightHand.geometric_jacobian(&q)[(2, 5)], two_hands::right_hand_geometric_jacobian(&own)[2][5]);
+    assert_ne!(left, RightHand.direct_kinematics(&q));
+    let gravity = SVector::from(two_hands::gravity(&NOMINAL_GRAVITY, &own));
+    assert_eq!(held(&LeftHand, q), gravity);
+    assert_eq!(held(&RightHandMounted::default(), q), gravity);
+    assert!((held(&LeftHandWithParameters::default(), q) - gravity).norm() < 1e-12);
+    let (three, two) = (LeftHand.operational_inertia(&q), RightHand.operational_inertia(&q));
+    assert_eq!((three.nrows(), two.nrows()), (3, 2));
 }
