@@ -46,7 +46,8 @@ fn table(head: &[&str], rows: &[Vec<String>]) -> String {
     for row in rows {
         text += "<tr>";
         for cell in row {
-            let is_number = cell.starts_with(|c: char| c.is_ascii_digit() || c == '-' || c == '–');
+            // A combination of parameters begins with a number, too.
+            let is_number = cell.starts_with(|c: char| c.is_ascii_digit() || c == '-' || c == '–') && !cell.contains('*');
             let _ = write!(text, "<td{}>{}</td>", if is_number { " class=n" } else { "" }, escaped(cell));
         }
         text += "</tr>\n";
