@@ -83,7 +83,7 @@ impl Range {
 
     /// The root; `None` where a number may be negative.
     pub(super) fn root(self) -> Option<Range> {
-        if !(self.low >= 0.0) {
+        if self.low < 0.0 || self.low.is_nan() {
             return None;
         }
         let down = if self.low == 0.0 { 0.0 } else { self.low.sqrt().next_down() };
@@ -168,7 +168,7 @@ impl Taylor {
     /// Sine and cosine; `None` of an angle beyond 2^60.
     pub(super) fn sine_cosine(&self) -> Option<(Taylor, Taylor)> {
         let middle = 0.5 * (self.terms[0].low + self.terms[0].high);
-        if !(middle.abs() < 1e15) {
+        if middle.abs() >= 1e15 || middle.is_nan() {
             return None;
         }
         let (sine, cosine, bits) = sine_cosine_of(&Rational::try_from(middle).ok()?, 64)?;
