@@ -238,6 +238,7 @@ Exit codes: 0 done, 1 the description is faulty, 2 a file cannot be read or writ
   armgen verify robot.yaml src/robot.rs
   armgen generate robot.yaml --out robot.rs --verify && armgen verify robot.yaml robot.rs
   armgen verify identified.yaml out/certificate.json             of `armgen identify --report out`
+  armgen verify robot.yaml timing.json                           of `armgen time --json timing.json`
 
 The text of the module is read back by a checker of its own, which derives the equations from the
 description the textbook's way and compares both, exactly, at random points of prime fields and at
@@ -251,7 +252,7 @@ Exit codes: 0 equal, 1 not equal or faulty (the first entry that differs is name
         /// Description of the robot arm
         #[arg(value_name = "ROBOT.yaml", value_hint = ValueHint::FilePath)]
         description: PathBuf,
-        /// The module that was generated from it, of MATLAB the folder; or a certificate of identified numbers
+        /// The module that was generated from it, of MATLAB the folder; or a certificate of identified numbers, or a timing
         #[arg(value_name = "ROBOT.rs", value_hint = ValueHint::FilePath)]
         module: PathBuf,
         /// The language of the module; that of its extension if not given

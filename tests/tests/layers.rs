@@ -343,6 +343,7 @@ const VERIFY: Layers = &[
             "stream",
         ],
     ),
+    ("timing", &["arithmetic", "check", "element", "enclosure", "equations", "float", "formula"]),
 ];
 
 /// Contents of a file: modules that it declares, names that it brings into scope, paths that it uses.

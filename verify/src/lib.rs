@@ -94,6 +94,7 @@ pub mod stated;
 #[doc(hidden)]
 pub mod stream;
 pub mod test_kit;
+pub mod timing;
 
 use armgen_description::diagnostic::Colour;
 use armgen_description::kinds::Scalar;
@@ -187,6 +188,14 @@ pub fn verify<'a>(source: &Source, text: impl Into<ModuleText<'a>>, certificate:
 fn arm(source: &Source) -> Result<Manipulator, String> {
     let (read, diagnostics) = validate::structure(source, Scalar::F64).finish();
     read.map(|(manipulator, _)| manipulator).ok_or_else(|| diagnostics.render(source, Colour::Never))
+}
+
+/// Proves the timing of a path: a file of `armgen time --json`, of the arm of a description.
+///
+/// # Errors
+/// What is not proved, with its place, or why a text cannot be read.
+pub fn verify_timing(source: &Source, text: &str) -> Result<timing::Proved, String> {
+    timing::check(&arm(source)?, text)
 }
 
 /// Verifies with chosen claims and effort.

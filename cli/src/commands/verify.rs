@@ -1,4 +1,5 @@
-//! `armgen verify`: whether a module equals the equations of its description, or identified numbers are those that a certificate proves.
+//! `armgen verify`: whether a module equals the equations of its description, identified numbers are those that a certificate proves,
+//! or a timing keeps its limits and its bound.
 
 use std::ffi::OsStr;
 use std::path::{Path, PathBuf};
@@ -12,6 +13,7 @@ use armgen_verify::certificate::Certificate;
 use armgen_verify::inverse_kinematics;
 use armgen_verify::reader::{matlab, options_of, ModuleText};
 use armgen_verify::report::Report;
+use armgen_verify::timing;
 use indicatif::{ProgressBar, ProgressStyle};
 
 use crate::{companions, input, terminal, FAULTY};
@@ -39,6 +41,9 @@ fn verified(description: &Path, module: &Path, language: Option<Language>) -> Re
     let text = if module.is_dir() { input::package(module) } else { input::written(module) }?;
     if identification::is_one(text.text()) {
         return identified(&source, module, text.text());
+    }
+    if timing::is_one(text.text()) {
+        return timed(&source, module, text.text());
     }
     if let Some(with) = companions::goes_with(module, text.text()) {
         terminal::error(&format!("{} goes with {with}: verify that one", module.display()));
@@ -105,6 +110,21 @@ fn identified(source: &Source, certificate: &Path, text: &str) -> Result<u8, u8>
         Ok(proved) => Ok(terminal::print(&format!("{}verified\n", super::identify::proofs(&proved)))),
         Err(fault) => {
             terminal::error(&format!("{}: {fault}", certificate.display()));
+            Err(FAULTY)
+        }
+    }
+}
+
+/// A timing of a path.
+fn timed(source: &Source, file: &Path, text: &str) -> Result<u8, u8> {
+    input::manipulator(source, armgen_codegen::kinds::Scalar::F64, input::Warnings::Counted)?;
+    match with_spinner("verifying", || armgen_verify::verify_timing(source, text)) {
+        Ok(proved) => Ok(terminal::print(&format!(
+            "{} segments: every limit is kept on all of the path in {} s; no motion on it takes less than {} s\nverified\n",
+            proved.segments, proved.duration, proved.lower_bound
+        ))),
+        Err(fault) => {
+            terminal::error(&format!("{}: {fault}", file.display()));
             Err(FAULTY)
         }
     }

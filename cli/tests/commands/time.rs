@@ -323,6 +323,100 @@ fn every_code_is_on_the_page_and_tested() {
     }
 }
 
+/// The answer of `armgen verify` on a timing; "" where it is proved.
+fn refused(name: &str, robot: &str, timing: &Value) -> String {
+    let folder = folder(&format!("time-verify-{name}"));
+    let [arm, json] = ["robot.yaml", "timing.json"].map(|file| folder.join(file));
+    fs::write(&arm, robot).expect("a file");
+    fs::write(&json, timing.to_string()).expect("a file");
+    let [arm, json] = [&arm, &json].map(|path| path.to_str().expect("a UTF-8 path"));
+    let output = armgen(&["verify", arm, json]);
+    assert_eq!(output.status.success(), out(&output).ends_with("verified\n"), "{}", err(&output));
+    if output.status.success() {
+        String::new()
+    } else {
+        err(&output)
+    }
+}
+
+/// Friction, a torque that binds, and a motor that needs momentum.
+fn arms() -> Vec<(&'static str, String, &'static str)> {
+    vec![
+        ("slide", SLIDE.to_owned(), "points: [[0], [2]]\n"),
+        ("pendulum", PENDULUM.to_owned(), "points: [[0], [2]]\n"),
+        ("momentum", PENDULUM.to_owned(), "points: [[0], [3]]\nlimits: {effort: [8]}\n"),
+    ]
+}
+
+fn verified(name: &str, robot: &str, path: &str) -> Value {
+    let (_, _, timing) = timed(&format!("verified-{name}"), robot, path, &["--gap", "0.005"], 0);
+    assert_eq!(refused(name, robot, &timing), "", "{name}");
+    timing
+}
+
+#[test]
+fn a_timing_is_proved_again() {
+    for (name, robot, path) in arms() {
+        let timing = verified(name, &robot, path);
+        // Another arm: 1 % more mass.
+        let heavier = robot.replace("mass: 2,", "mass: 2.02,").replace("mass: 1,", "mass: 1.01,");
+        assert!(refused(name, &heavier, &timing).contains("not proved: at s = "), "{name}");
+    }
+    // Four joints.
+    let scara = fs::read_to_string(file("robots/scara.yaml")).expect("a description");
+    verified("scara", &scara, SCARA_PATH);
+    let (name, robot, _) = &arms()[0];
+    let mut cut = verified(name, robot, "points: [[0], [2]]\n");
+    cut["grid"]["k"].as_array_mut().expect("a list").pop();
+    assert!(refused(name, robot, &cut).contains("lengths of its lists"));
+}
+
+/// Every digit that matters, in all lists.
+#[test]
+#[ignore = "wide"]
+fn changed_digits_of_a_timing_are_refused() {
+    let mut count = 0;
+    for (name, robot, path) in arms() {
+        let timing = verified(name, &robot, path);
+        let mut changed = |pointer: &str, by: f64| {
+            let mut timing = timing.clone();
+            let value = timing.pointer_mut(pointer).unwrap_or_else(|| panic!("{name}: {pointer}"));
+            *value = number(value).mul_add(1.0 + by, by * 1e-3).into();
+            count += 1;
+            let why = refused(name, &robot, &timing);
+            assert!(why.contains("timing.json: "), "{name}: {pointer} by {by} is accepted");
+        };
+        let segments = timing["grid"]["k"].as_array().expect("a list").len();
+        for part in 1..10 {
+            let i = part * segments / 10;
+            for (list, by) in [("x", 1e-4), ("x", -1e-4), ("t", 1e-3), ("s", 1e-3)] {
+                changed(&format!("/grid/{list}/{i}"), by);
+            }
+            if timing["bound"]["row"][i].is_string() {
+                ["x0", "x2"].into_iter().for_each(|list| changed(&format!("/bound/{list}/{i}"), -1e-2));
+            }
+        }
+        for (pointer, by) in [("/duration", -1e-6), ("/duration", 1e-6), ("/lower_bound", 1e-3)] {
+            changed(pointer, by);
+        }
+        changed("/path/coefficients/0/0/1", 1e-3);
+    }
+    assert!(count > 150, "{count}");
+}
+
+/// The path of the tutorial has the report that the page prints.
+#[test]
+fn the_tutorial_prints_what_the_program_prints() {
+    let page = fs::read_to_string(file("docs/pick-and-place.md")).expect("a page");
+    let block = |language: &str| {
+        let rest = page.split_once(&format!("```{language}\n")).expect("a block").1;
+        rest.split_once("```").expect("an end").0.to_owned()
+    };
+    let robot = fs::read_to_string(file("robot.yaml")).expect("a description");
+    let (printed, _, _) = timed("tutorial", &robot, &block("yaml"), &[], 0);
+    assert_eq!(printed, block("text"));
+}
+
 #[test]
 fn usage_is_judged() {
     let path = folder("time-usage").join("path.yaml");

@@ -250,6 +250,36 @@ fn csv<const N: usize>(job: &Job<'_>, arm: &Arm<N>, path: &Curve<N>, timing: &Ti
     text
 }
 
+/// Barriers that are not the best of their segment and bound x where a better one begins.
+fn beneath<const N: usize>(timing: &Timing<'_, f64, N>, best: &[Option<UpperBound<f64>>]) -> Vec<(usize, UpperBound<f64>)> {
+    let mut found: Vec<(usize, UpperBound<f64>)> = Vec::new();
+    for (i, bound) in best.iter().enumerate() {
+        let Some(mut bound) = bound.filter(|bound| bound.direction != 0) else { continue };
+        let (mut segment, direction) = (i, bound.direction);
+        loop {
+            // The node at which x must be bounded, the segment beyond it, and the bound.
+            let (node, beyond, needed) = match direction {
+                1 => (segment, segment.checked_sub(1), bound.x[0]),
+                _ => (segment + 1, Some(segment + 1), bound.x[1]),
+            };
+            let Some((beyond, of)) = beyond.and_then(|beyond| Some((beyond, best.get(beyond)?))) else { break };
+            let reaches = |of: &UpperBound<f64>| of.x[usize::from(direction == 1)] <= needed;
+            let is_bounded = of.as_ref().is_some_and(|of| of.direction == direction || of.direction == 0 && reaches(of));
+            let most = timing.profile(node).map_or(f64::INFINITY, |profile| profile.most);
+            let known = found.iter().any(|(segment, of)| *segment == beyond && of.direction == direction);
+            let next = timing.barriers(beyond)[usize::from(direction != 1)];
+            match next {
+                Some(next) if !is_bounded && needed < most && !known => {
+                    found.push((beyond, next));
+                    (bound, segment) = (next, beyond);
+                }
+                _ => break,
+            }
+        }
+    }
+    found
+}
+
 fn json<const N: usize>(
     job: &Job<'_>,
     path: &Curve<N>,
@@ -270,6 +300,7 @@ fn json<const N: usize>(
     let barriers: Vec<Option<UpperBound<f64>>> = (0..timing.segments()).map(|i| timing.upper_bound(i)).collect();
     let of_barrier =
         |of: &dyn Fn(&UpperBound<f64>) -> Value| barriers.iter().map(|b| b.as_ref().map_or(Value::Null, of)).collect::<Vec<_>>();
+    let row = |b: &UpperBound<f64>| format!("{} {}", job.joint(b.joint), b.limit.name());
     let shares = |k: usize| largest.iter().map(|of| of.share[k]).collect::<Vec<_>>();
     let limits = &job.file.limits;
     let finite = |x: f64| if x.is_finite() { json!(x) } else { Value::Null };
@@ -309,7 +340,10 @@ fn json<const N: usize>(
                 "x0": of_barrier(&|b| json!(b.x[0])),
                 "x2": of_barrier(&|b| json!(b.x[1])),
                 "k": of_barrier(&|b| json!(b.k)),
-                "row": of_barrier(&|b| json!(format!("{} {}", job.joint(b.joint), b.limit.name()))),
+                "row": of_barrier(&|b| json!(row(b))),
+                "also": beneath(timing, &barriers).iter().map(|(segment, b)| json!({
+                    "segment": segment, "direction": b.direction, "x0": b.x[0], "x2": b.x[1], "k": b.k, "row": row(b),
+                })).collect::<Vec<_>>(),
             }),
         ),
     ]
