@@ -122,7 +122,7 @@ fn other_robot(root: &Node, robot: &Robot) -> Option<String> {
 const KEYS: [Key; 19] = [
     required("robot", "robot: scara"),
     required("title", "title: Inverse dynamics along a line"),
-    required("expect", "expect:` and below it one `- {quantity: ..., ...}"),
+    optional("expect"),
     optional("group"),
     optional("postures"),
     optional("plane"),

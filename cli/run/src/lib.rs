@@ -273,8 +273,13 @@ fn report(jobs: &[Job<'_>]) -> (String, bool) {
     ];
     let mut table = Table::new(columns);
     let (mut total, mut met) = (0, 0);
+    let mut unjudged = Vec::new();
     for job in jobs {
-        for (i, line) in job.lines().into_iter().enumerate() {
+        let lines = job.lines();
+        if lines.is_empty() {
+            unjudged.push(job.experiment().name.as_str());
+        }
+        for (i, line) in lines.into_iter().enumerate() {
             total += 1;
             met += usize::from(line.met);
             let name = if i == 0 { job.experiment().name.clone() } else { String::new() };
@@ -282,7 +287,12 @@ fn report(jobs: &[Job<'_>]) -> (String, bool) {
             table.row([name, line.what, line.found, line.unit.to_string(), line.expected, verdict.into()]);
         }
     }
-    (format!("{}\n{met} of {total} results as expected\n", table.text()), met == total)
+    let judged = format!("{}\n{met} of {total} results as expected\n", table.text());
+    let mut text = if total == 0 { String::new() } else { judged };
+    if !unjudged.is_empty() {
+        text += &format!("without `expect`, drawn and not judged: {}\n", unjudged.join(", "));
+    }
+    (text, met == total)
 }
 
 fn demonstrate(arm: &dyn Arm, out: &Path, description: &Source) -> u8 {
