@@ -1,7 +1,5 @@
 //! Weighted least squares on rows of joints: Gram matrices, robust weights, standard errors that hold for coloured residuals.
 
-use std::ops::Range;
-
 use nalgebra::{DMatrix, DVector, SymmetricEigen};
 
 use crate::signal::spread;
@@ -154,27 +152,18 @@ impl Equations {
     pub fn grams(&self, weights: &[f64], classes: usize, class: impl Fn(usize) -> usize) -> Vec<Gram> {
         let n = self.columns;
         let mut all = vec![Gram::zero(n); classes];
-        // Where rows are not zero, as stretches: base parameters and friction.
-        let mut filled: Vec<Range<usize>> = Vec::with_capacity(n);
+        let mut filled = Vec::with_capacity(n);
         for (k, &w) in weights.iter().enumerate().filter(|(_, w)| **w > 0.0) {
             let (row, b) = (self.row(k), self.b[k]);
             let Gram { h, g, bb } = &mut all[class(k)];
             filled.clear();
-            for i in (0..n).filter(|&i| row[i] != 0.0) {
-                match filled.last_mut() {
-                    Some(last) if last.end == i => last.end = i + 1,
-                    _ => filled.push(i..i + 1),
-                }
-            }
+            filled.extend((0..n).filter(|&i| row[i] != 0.0));
             let h = h.as_mut_slice();
-            for (place, stretch) in filled.iter().enumerate() {
-                for i in stretch.clone() {
-                    let wa = w * row[i];
-                    g[i] += wa * b;
-                    for of in std::iter::once(i..stretch.end).chain(filled[place + 1..].iter().cloned()) {
-                        let column = &mut h[i * n..(i + 1) * n];
-                        column[of.clone()].iter_mut().zip(&row[of]).for_each(|(h, x)| *h += wa * x);
-                    }
+            for (place, &i) in filled.iter().enumerate() {
+                let wa = w * row[i];
+                g[i] += wa * b;
+                for &j in &filled[place..] {
+                    h[i * n + j] += wa * row[j];
                 }
             }
             *bb += w * b * b;

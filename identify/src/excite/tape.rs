@@ -197,3 +197,62 @@ fn sign(x: f64) -> f64 {
         0.0
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::{Tape, LANES};
+    use armgen_codegen::source::Source;
+    use armgen_codegen::{schedule, validate, Model};
+
+    /// Derivatives of all entries of torques with every kind of friction, and of a frame, are differences.
+    #[test]
+    fn derivatives_are_those_of_differences() {
+        let text = "name: two\nconvention: standard\ngravity: [1, -9, 2]\njoints:
+  - {name: a, type: revolute, a: 0.4, alpha: pi/3, d: 0.1, theta: 0.2, friction: {viscous: 1, coulomb: 2, load: 0.1, cubic: 0.3},
+     link: {mass: 3, com: [-0.2, 0.1, 0], inertia: {xx: 0.02, yy: 0.04, zz: 0.05, xy: 0.003}}, motor: {ratio: 50, inertia: 1e-4}}
+  - {name: b, type: prismatic, a: 0.3, alpha: 0.4, d: 0, theta: 1, friction: {coulomb: 1, stribeck: {torque: 2, velocity: 0.3}},
+     link: {mass: 1, com: [-0.1, 0.01, 0], inertia: {xx: 0.01, yy: 0.01, zz: 0.01}}}\n";
+        let (manipulator, _) = validate::read(&Source::new("two", text)).0.expect("a valid arm");
+        let functions = schedule::Selection::named(["inverse_dynamics", "direct_kinematics"]).expect("names");
+        let module = schedule::module(&Model::new(manipulator), &schedule::Options { functions, ..Default::default() });
+        for of in &module.functions {
+            let function = armgen_evaluate::function::<f64>(&module, of);
+            let tape = Tape::new(&function, &[0.2, 0.2]);
+            let mut room = tape.room();
+            let state = |argument: usize, entry: usize, lane: usize| ((argument * 5 + entry * 3 + lane) as f64 * 0.7).sin();
+            let mut x: Vec<Vec<[f64; LANES]>> = (0..function.arguments.len())
+                .map(|argument| (0..2).map(|entry| std::array::from_fn(|lane| state(argument, entry, lane))).collect())
+                .collect();
+            let weights: Vec<[f64; LANES]> =
+                (0..room.results.len()).map(|k| std::array::from_fn(|lane| state(7, k, lane))).collect();
+            let mut sum = |x: &[Vec<[f64; LANES]>]| -> [f64; LANES] {
+                let arguments: Vec<&[[f64; LANES]]> = x.iter().map(Vec::as_slice).collect();
+                tape.forwards(&arguments, &mut room);
+                std::array::from_fn(|lane| room.results.iter().zip(&weights).map(|(y, w)| y[lane] * w[lane]).sum())
+            };
+            let h = 1e-5;
+            let mut slopes = Vec::new();
+            for argument in 0..x.len() {
+                for entry in 0..2 {
+                    let old = x[argument][entry];
+                    x[argument][entry] = old.map(|x| x + h);
+                    let after = sum(&x);
+                    x[argument][entry] = old.map(|x| x - h);
+                    let before = sum(&x);
+                    x[argument][entry] = old;
+                    slopes.push((argument, entry, std::array::from_fn::<f64, LANES, _>(|i| (after[i] - before[i]) / (2.0 * h))));
+                }
+            }
+            sum(&x);
+            let arguments: Vec<&[[f64; LANES]]> = x.iter().map(Vec::as_slice).collect();
+            tape.backwards(&arguments, &weights, &mut room);
+            for (argument, entry, expected) in slopes {
+                let found = room.gradients[argument][entry];
+                for lane in 0..LANES {
+                    let (a, b) = (found[lane], expected[lane]);
+                    assert!((a - b).abs() < 1e-6 * (1.0 + b.abs()), "{}: {argument} {entry} {lane}: {a} {b}", function.name);
+                }
+            }
+        }
+    }
+}
