@@ -397,9 +397,7 @@ impl Checker {
                 let motor = arm.motor.as_ref().map(|motor| motor.ratio.times(&motor.ratio).times(&motor.viscous));
                 let viscous = motor.map_or_else(|| arm.viscous.clone(), |motor| motor.plus(&arm.viscous));
                 let dry = arm.coulomb.plus(&arm.load.times(&g.magnitude()));
-                // At a root of q' the joint rests, and friction at rest is whatever up to this: the middle of the segment decides.
-                let sign = rate.terms[0].sign();
-                let d = g.plus(&dry.times(&bound(sign))).plus(&arm.offset);
+                let d = g.plus(&dry.directed(rate)).plus(&arm.offset);
                 let v = viscous.times(rate);
                 if kind == Kind::TorqueHigh {
                     upper(m, c, v, d, high?)
