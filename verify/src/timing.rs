@@ -2,13 +2,13 @@
 //! can beat.
 //!
 //! Nothing of the timing is shared. The torques along the path come from the checker's own Newton-Euler equations in Taylor models
-//! ([`taylor`]) about the middle of each segment, and the law and the barriers from the digits of the file. For x = ds² and u = dds
+//! (`taylor.rs`) about the middle of each segment, and the law and the barriers from the digits of the file. For x = ds² and u = dds
 //!
 //! ```text
 //! tau = m u + c x + v sqrt(x) + d,    m = B q',  c = B q'' + C(q, q') q',  v = F_v q',  d = g + sign(q') (F_c + F_l |g|) + F_0
 //! ```
 //!
-//! - **The motion.** Each limit is an inequality of polynomials on a segment, proved by Bernstein coefficients on halves ([`bernstein`]).
+//! - **The motion.** Each limit is an inequality of polynomials on a segment, proved by Bernstein coefficients on halves (`bernstein.rs`).
 //! - **The bound.** A barrier X has m > 0 and m U + c X + v sqrt(X) + d >= limit on a segment. No motion crosses it upwards, so x <= X at
 //!   its left end implies x <= X on the segment. With m < 0 the same holds from the right end, and a bound of speed holds everywhere.
 //!   The bound that a barrier needs at its end follows from the ends of the path, from another barrier, or from two rows at the node that
@@ -397,9 +397,7 @@ impl Checker {
                 let motor = arm.motor.as_ref().map(|motor| motor.ratio.times(&motor.ratio).times(&motor.viscous));
                 let viscous = motor.map_or_else(|| arm.viscous.clone(), |motor| motor.plus(&arm.viscous));
                 let dry = arm.coulomb.plus(&arm.load.times(&g.magnitude()));
-                // At a root of q' the joint rests, and friction at rest is whatever up to this: the middle of the segment decides.
-                let sign = rate.terms[0].sign();
-                let d = g.plus(&dry.times(&bound(sign))).plus(&arm.offset);
+                let d = g.plus(&dry.directed(rate)).plus(&arm.offset);
                 let v = viscous.times(rate);
                 if kind == Kind::TorqueHigh {
                     upper(m, c, v, d, high?)
