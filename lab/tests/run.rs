@@ -54,6 +54,18 @@ fn err(output: &Output) -> String {
 }
 
 #[test]
+fn an_experiment_without_expectations_is_drawn_and_not_judged() {
+    let folder = folder("run_without_expectations");
+    let file = for_the_built_robot(&folder, "posture.yaml", 0.0);
+    let text = fs::read_to_string(&file).expect("the file");
+    fs::write(&file, text.split_once("expect:").expect("expectations").0).expect("a file");
+    let output = run(&folder, &[&file]);
+    assert_eq!(output.status.code(), Some(0), "{output:?}");
+    let said = out(&output);
+    assert!(said.contains("without `expect`, drawn and not judged: posture") && !said.contains("as expected"), "{said}");
+}
+
+#[test]
 fn results_as_expected_give_a_table_figures_logs_and_code_0() {
     let folder = folder("run_as_expected");
     let output = run(&folder, &[&for_the_built_robot(&folder, "posture.yaml", 0.0)]);

@@ -72,7 +72,7 @@ impl<R: Functions<N, P>, W, const N: usize, const M: usize, const P: usize> Inst
             let why = format!("the branch ends at {:.6} s of {duration} s: {why}", followed.s * duration);
             Ended { why, told_by: is_end.then_some(Quantity::BranchEndsAt) }
         });
-        let postures = (solver.count)(&path(0.0));
+        let postures = (solver.postures)(&path(0.0)).len();
         Ok(Box::new(Branch { body, robot: &self.robot, way, duration, postures, reached: followed.s, ended }))
     }
 }

@@ -16,8 +16,8 @@ const STEPS: u32 = 500;
 /// The inverse-kinematics functions that runs need.
 #[derive(Clone, Copy, Debug)]
 pub struct Solver<const N: usize> {
-    /// The number of postures for a pose.
-    pub(super) count: fn(&Pose<f64>) -> usize,
+    /// All postures for a pose.
+    pub(super) postures: fn(&Pose<f64>) -> Vec<SVector<f64, N>>,
     /// Follows a posture along a path, as `armgen_runtime::inverse_kinematics::follow` does.
     pub(super) follow: fn(&dyn Fn(f64) -> Pose<f64>, &SVector<f64, N>, &mut dyn FnMut(f64, &SVector<f64, N>)) -> Followed<f64, N>,
 }
@@ -45,7 +45,7 @@ where
 {
     fn solver(&self) -> Option<Solver<N>> {
         Some(Solver {
-            count: |pose| R::default().inverse_kinematics(&pose.frame()).count,
+            postures: |pose| R::default().inverse_kinematics(&pose.frame()).as_slice().iter().map(|posture| posture.q).collect(),
             follow: |path, start, each| follow(&R::default(), path, start, STEPS, each),
         })
     }

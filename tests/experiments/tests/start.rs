@@ -56,3 +56,36 @@ fn peaks_are_the_largest_of_what_is_logged() {
         assert!(peak.rate > 0.0 && (peak.rate / fastest - 1.0).abs() < 0.1, "{i}: {} {fastest}", peak.rate);
     }
 }
+
+/// Without a posture to start near, each of the two postures of a pose is possible, and the run takes the nearer to zero, without whole turns.
+#[test]
+fn a_start_from_the_path_is_the_nearest_to_zero() {
+    let arm = armgen_experiment_tests::scara();
+    let begin = |path: &str, start: &str| -> Vec<f64> {
+        // Without expectations: the run is drawn and not judged.
+        let text = text(start).replace("path: paths/ghost.yaml", "path: way");
+        let text = text.split_once("expect:").expect("expectations").0;
+        assert!(text.contains("path: way"), "{text}");
+        let open = |_: &std::path::Path| Ok(path.to_owned());
+        let source = armgen_codegen::source::Source::new("start.yaml", text);
+        let parsed = armgen_experiments::read::experiment(source.name().as_ref(), &source, arm.robot(), &open);
+        let armgen_experiments::read::Parsed::Experiment(experiment) = parsed else { panic!("{}", common::said(&parsed)) };
+        let mut job = Job::new(&experiment, &*arm);
+        assert!(job.implausible_settings().is_empty(), "{path}: {:?}", job.implausible_settings());
+        job.run();
+        assert!(job.lines().is_empty() && !job.figures().is_empty(), "{:?}", job.lines());
+        (0..4).map(|joint| job.record().values(Quantity::Joint(JointQuantity::Position, joint))[0]).collect()
+    };
+    let half_turns = |q: &[f64]| [0, 1, 3].iter().all(|&joint| q[joint].abs() <= std::f64::consts::PI);
+    for [x, y, z] in [[0.5, -0.1, 0.2], [-0.4, 0.4, 0.3], [0.6, 0.2, 0.1], [0.3, 0.5, 0.1], [0.7, 0.0, 0.2]] {
+        let path = format!("start: [{x}, {y}, {z}]\nsegments:\n  - {{line: [{x}, {y}, 0.25], duration: 1, law: cubic}}\n");
+        let found = begin(&path, "start: {from: path}");
+        assert!(half_turns(&found), "{path}: {found:?}");
+        // The other elbow reaches the same point, turned as much the other way.
+        let heading = 2.0 * f64::atan2(y, x);
+        let other = begin(&path, &format!("start: {{from: path, near: [{}, {}, {z}, 0]}}", heading - found[0], -found[1]));
+        // The turn of the wrist is free: the path asks for a point.
+        let size = |q: &[f64]| q[..3].iter().map(|x| x * x).sum::<f64>();
+        assert!((found[1] + other[1]).abs() < 1e-6 && size(&found) <= size(&other) + 1e-6, "{path}: {found:?}, {other:?}");
+    }
+}
