@@ -5,11 +5,11 @@ use armgen_codegen::source::Source;
 use armgen_identify::options::{read, Gains};
 use armgen_identify::prepare::Friction;
 
-/// The block of options on the page of the documentation.
+/// The block of options of `armgen identify` on the page of the documentation.
 fn of_the_page() -> String {
     let page = std::fs::read_to_string(concat!(env!("CARGO_MANIFEST_DIR"), "/../docs/identification.md")).expect("the page");
-    let (_, rest) = page.split_once("```yaml\n").expect("a block");
-    rest.split_once("```").expect("its end").0.to_owned()
+    let blocks = page.split("```yaml\n").skip(1).filter_map(|rest| Some(rest.split_once("```")?.0));
+    blocks.into_iter().find(|block| block.contains("logs:")).expect("a block with logs").to_owned()
 }
 
 #[test]

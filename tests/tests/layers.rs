@@ -186,7 +186,7 @@ const VERIFY: Layers = &[
     ("enclosure", &["formula", "interval"]),
     ("program", &["element", "formula"]),
     ("contract", &["program"]),
-    ("divisors", &["element", "program"]),
+    ("divisors", &["contract", "element", "program"]),
     ("signs", &["element", "program"]),
     ("float", &["element", "enclosure", "program"]),
     ("arithmetic", &["element", "enclosure", "float", "formula", "program", "stream"]),

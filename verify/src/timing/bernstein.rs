@@ -139,6 +139,20 @@ impl Part {
     }
 }
 
+impl Taylor {
+    /// Dry friction of this size against `rate`. Within rounding of a root of the rate the joint rests, and the middle of the segment
+    /// decides; where the rate has both signs, the friction may be anything up to this size.
+    pub(super) fn directed(&self, rate: &Taylor) -> Taylor {
+        let sign = Taylor::constant(Range::of(rate.terms[0].sign()));
+        let against = rate.times(&sign).negated().minus(&Taylor::constant(Range::of(1e-9 * rate.range().size())));
+        if self.is_zero() || at_most_zero(&against, None, &Square([Range::ZERO; 3])).is_ok() {
+            self.times(&sign)
+        } else {
+            Taylor { rest: Range::both(self.range().size()), ..Taylor::constant(Range::ZERO) }
+        }
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

@@ -1,6 +1,5 @@
 //! Intervals of floats rounded outwards, and Taylor models over them: a polynomial in t from -1 to 1, and an interval for what it misses.
 
-use super::bernstein::{at_most_zero, Square};
 use crate::arithmetic::Arithmetic;
 use crate::element::Element;
 use crate::enclosure::{enclose, sine_cosine_of};
@@ -98,7 +97,7 @@ impl Range {
     }
 
     /// From -size to size.
-    fn both(size: f64) -> Range {
+    pub(super) fn both(size: f64) -> Range {
         Range { low: -size, high: size }
     }
 
@@ -163,18 +162,6 @@ impl Taylor {
             self.negated()
         } else {
             Taylor { rest: Range { low: 0.0, high: range.size() }, ..Taylor::constant(Range::ZERO) }
-        }
-    }
-
-    /// Dry friction of this size against `rate`. Within rounding of a root of the rate the joint rests, and the middle of the segment
-    /// decides; where the rate has both signs, the friction may be anything up to this size.
-    pub(super) fn directed(&self, rate: &Taylor) -> Taylor {
-        let sign = Taylor::constant(Range::of(rate.terms[0].sign()));
-        let against = rate.times(&sign).negated().minus(&Taylor::constant(Range::of(1e-9 * rate.range().size())));
-        if self.is_zero() || at_most_zero(&against, None, &Square([Range::ZERO; 3])).is_ok() {
-            self.times(&sign)
-        } else {
-            Taylor { rest: Range::both(self.range().size()), ..Taylor::constant(Range::ZERO) }
         }
     }
 
