@@ -180,7 +180,9 @@ fn own_column(lines: &[(usize, &str)], here: usize) -> Option<Cause> {
     };
     let cause = |i: usize, fits: usize| {
         let (start, line) = lines[i];
-        let (own, word) = (column(i), line.trim_start());
+        // Other white space than spaces is no indentation.
+        let own = column(i);
+        let word = &line[own..];
         let columns = |n: usize| format!("{n} column{}", if n == 1 { "" } else { "s" });
         let from = start + own;
         let key = word.split([':', ' ']).next().unwrap_or_default();
