@@ -83,12 +83,12 @@ fn below(lines: &[(usize, &str)], here: usize) -> Option<usize> {
 }
 
 fn begins_with_dash(line: &str) -> bool {
-    matches!(line.trim_start().strip_prefix('-'), Some(rest) if rest.is_empty() || rest.starts_with(' '))
+    matches!(line.trim_start_matches(' ').strip_prefix('-'), Some(rest) if rest.is_empty() || rest.starts_with(' '))
 }
 
 /// The column of a line's key: after the dash, if the line has a dash.
 fn key_column(line: &str) -> usize {
-    let rest = line.trim_start();
+    let rest = line.trim_start_matches(' ');
     let after = if begins_with_dash(line) { rest[1..].trim_start() } else { rest };
     line.len() - after.len()
 }
@@ -103,7 +103,7 @@ fn without_space(lines: &[(usize, &str)], here: usize) -> Option<Cause> {
     [Some(here), above(lines, here)].into_iter().flatten().find_map(|i| {
         let (start, line) = lines[i];
         let dash = start + indentation(line);
-        let (word, rest) = line.trim_start().split_once(':')?;
+        let (word, rest) = line.trim_start_matches(' ').split_once(':')?;
         if word.strip_prefix('-').is_some_and(is_word) {
             return Some(Cause {
                 span: Span::new(dash, dash + 1),
@@ -125,8 +125,8 @@ fn without_space(lines: &[(usize, &str)], here: usize) -> Option<Cause> {
 fn missing_dash(lines: &[(usize, &str)], here: usize) -> Option<Cause> {
     let cause = |i: usize| {
         let (start, line) = lines[i];
-        let word = line.trim_start();
-        let from = start + indentation(line);
+        let own = indentation(line);
+        let (from, word) = (start + own, &line[own..]);
         let key = word.split(':').next().unwrap_or_default();
         Cause {
             span: Span::new(from, from + key.len()),
