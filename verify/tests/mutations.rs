@@ -79,7 +79,7 @@ fn different_entries(a: &Program, b: &Program, states: &[Arguments<f64>]) -> Vec
     a.outputs.iter().zip(different).filter(|(_, different)| *different).map(|(output, _)| output.place.clone()).collect()
 }
 
-/// Makes changes until `wanted` of them count, each of which must be found. Returns the number of kinds of changes found.
+/// Makes changes until `wanted` of them count, each of which must be found. Returns the kinds of changes found.
 fn check(name: &str, options: &Options, wanted: usize) -> BTreeSet<mutation::Kind> {
     let start = std::time::Instant::now();
     let (source, scalar) = (common::source(name), options.scalar);
