@@ -29,6 +29,22 @@ pub(crate) fn description(path: &Path) -> Result<Source, u8> {
     Ok(source)
 }
 
+/// Prints the diagnostics of a source, if there are any.
+pub(crate) fn show(source: &Source, diagnostics: &Diagnostics) {
+    if !diagnostics.is_empty() {
+        terminal::diagnose(&diagnostics.render(source, terminal::colour(&std::io::stderr())));
+    }
+}
+
+/// The content that a reader found in a source, after its diagnostics; the exit code if one of them is an error.
+pub(crate) fn accepted<T>(source: &Source, (content, diagnostics): (T, Diagnostics)) -> Result<T, u8> {
+    show(source, &diagnostics);
+    if diagnostics.has_errors() {
+        return Err(FAULTY);
+    }
+    Ok(content)
+}
+
 /// The text of a log. A log may be longer than the limit; the message then has a remedy.
 pub(crate) fn log(path: &Path) -> Result<Source, u8> {
     let samples = armgen_page::SAMPLES;
@@ -110,9 +126,7 @@ pub(crate) fn report_or_exit_code<T>(
     warnings: Warnings,
 ) -> Result<T, u8> {
     if warnings == Warnings::Shown || diagnostics.has_errors() {
-        if !diagnostics.is_empty() {
-            terminal::diagnose(&diagnostics.render(source, terminal::colour(&std::io::stderr())));
-        }
+        show(source, diagnostics);
     } else if diagnostics.warnings() > 0 {
         let name = source.name();
         terminal::diagnose(&format!(

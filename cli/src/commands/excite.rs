@@ -84,14 +84,7 @@ fn options_of(asked: &Asked) -> Result<Options, u8> {
     let mut options = Options::default();
     if let Some(path) = &asked.options {
         let source = input::source(path)?;
-        let (read, diagnostics) = options::read(&source);
-        if !diagnostics.is_empty() {
-            terminal::diagnose(&diagnostics.render(&source, terminal::colour(&std::io::stderr())));
-        }
-        if diagnostics.has_errors() {
-            return Err(FAULTY);
-        }
-        options = read;
+        options = input::accepted(&source, options::read(&source))?;
     }
     (options.duration, options.harmonics, options.rate) = (asked.duration, usize::from(asked.harmonics), asked.rate);
     Ok(options)

@@ -181,13 +181,7 @@ fn options_of(asked: &Asked) -> Result<(Options, PathBuf), u8> {
         None => (Options::default(), PathBuf::new()),
         Some(path) => {
             let source = input::source(path)?;
-            let (chosen, diagnostics) = options::read(&source);
-            if !diagnostics.is_empty() {
-                terminal::diagnose(&diagnostics.render(&source, terminal::colour(&std::io::stderr())));
-            }
-            if diagnostics.has_errors() {
-                return Err(FAULTY);
-            }
+            let chosen = input::accepted(&source, options::read(&source))?;
             (chosen, path.parent().map(Path::to_path_buf).unwrap_or_default())
         }
     };

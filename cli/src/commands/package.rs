@@ -115,11 +115,12 @@ impl<'a> Package<'a> {
         let readme = self.readme(&made, &origin.file, example, takes_gravity);
         let texts = [
             self.lists(&made, &tests),
-            self.manifest(&made, manifest),
+            // Format 3 (REP 149); a comment holds no two dashes.
+            self.described(include_str!("package/package.xml"), &made.replace("--", "- -"), manifest, escaped),
             readme,
-            self.library(include_str!("package/arduino/library.properties"), &made, manifest, str::to_owned),
-            self.library(include_str!("package/arduino/library.json"), &made, manifest, in_json),
-            self.library(include_str!("package/arduino/header.h"), &made, manifest, str::to_owned),
+            self.described(include_str!("package/arduino/library.properties"), &made, manifest, str::to_owned),
+            self.described(include_str!("package/arduino/library.json"), &in_json(&made), manifest, in_json),
+            self.described(include_str!("package/arduino/header.h"), &made, manifest, str::to_owned),
             // An arm without bodies has no gravity.
             if example == Some("gravity") { self.sketch(&made, takes_gravity) } else { String::new() },
         ];
@@ -163,23 +164,10 @@ impl<'a> Package<'a> {
             .replace("@NAME@", &self.name())
     }
 
-    /// `package.xml`, format 3 (REP 149).
-    fn manifest(&self, made: &str, manifest: &Manifest) -> String {
+    /// A file that describes the package, with its origin `made`, in a format that writes texts of people in its own way.
+    fn described(&self, text: &str, made: &str, manifest: &Manifest, write: impl Fn(&str) -> String) -> String {
         let (name, mail) = manifest.person();
-        include_str!("package/package.xml")
-            .replace("@MADE@", &made.replace("--", "- -"))
-            .replace("@VERSION@", env!("CARGO_PKG_VERSION"))
-            .replace("@NAME@", &self.name())
-            .replace("@ROBOT@", &self.robot)
-            .replace("@MAIL@", &escaped(mail))
-            .replace("@MAINTAINER@", &escaped(name))
-            .replace("@LICENSE@", &escaped(manifest.license()))
-    }
-
-    /// A file of a library for Arduino or PlatformIO, which writes texts of people in its own way.
-    fn library(&self, text: &str, made: &str, manifest: &Manifest, write: impl Fn(&str) -> String) -> String {
-        let (name, mail) = manifest.person();
-        text.replace("@MADE@", &write(made))
+        text.replace("@MADE@", made)
             .replace("@VERSION@", env!("CARGO_PKG_VERSION"))
             .replace("@NAME@", &self.name())
             .replace("@ROBOT@", &self.robot)

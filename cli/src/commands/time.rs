@@ -97,7 +97,7 @@ fn timed(robot: &Path, path: &Path, asked: &Asked) -> Result<u8, u8> {
         if manipulator.dof() <= USUAL { job.run::<USUAL>(&mut diagnostics) } else { job.run::<MAX_JOINTS>(&mut diagnostics) }?;
     diagnostics.sort();
     let Some(motion) = motion else { return Err(refused(&given, &diagnostics)) };
-    shown(&given, &diagnostics);
+    input::show(&given, &diagnostics);
     for (out, text) in [(&asked.csv, &motion.csv), (&asked.json, &motion.json)] {
         let (Some(out), Some(text)) = (out, text) else { continue };
         let code = write_other([(robot, "the description"), (path, "the path")], out, text);
@@ -108,14 +108,8 @@ fn timed(robot: &Path, path: &Path, asked: &Asked) -> Result<u8, u8> {
     Ok(terminal::print(&motion.text))
 }
 
-fn shown(source: &Source, diagnostics: &Diagnostics) {
-    if !diagnostics.is_empty() {
-        terminal::diagnose(&diagnostics.render(source, terminal::colour(&std::io::stderr())));
-    }
-}
-
 fn refused(source: &Source, diagnostics: &Diagnostics) -> u8 {
-    shown(source, diagnostics);
+    input::show(source, diagnostics);
     terminal::error(&input::verdict(source, diagnostics));
     FAULTY
 }

@@ -7,6 +7,8 @@ use std::ops::{Add, Mul, Neg, Sub};
 
 use armgen_evaluate::{Angle, Arithmetic, Input, Operator};
 
+use super::tape::sign;
+
 /// From a to b.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Interval(pub(super) f64, pub(super) f64);
@@ -52,16 +54,7 @@ impl Interval {
 
     /// All signs.
     pub(super) fn sign(self) -> Interval {
-        let of = |x: f64| {
-            if x > 0.0 {
-                1.0
-            } else if x < 0.0 {
-                -1.0
-            } else {
-                0.0
-            }
-        };
-        Interval(of(self.0), of(self.1))
+        Interval(sign(self.0), sign(self.1))
     }
 
     /// e^x of numbers of at most 0.

@@ -188,7 +188,8 @@ impl Tape {
     }
 }
 
-fn sign(x: f64) -> f64 {
+/// The sign of a number; 0 of either zero.
+pub(super) fn sign(x: f64) -> f64 {
     if x > 0.0 {
         1.0
     } else if x < 0.0 {

@@ -58,7 +58,7 @@ pub(super) fn run(robot: &Path, path: Option<&Path>, trajectory: &Path) -> Resul
         Some(path) => {
             let given = input::source(path)?;
             let (file, diagnostics) = file::read(&given, &manipulator, false);
-            super::shown(&given, &diagnostics);
+            input::show(&given, &diagnostics);
             file.ok_or(FAULTY)?.limits
         }
     };
