@@ -69,42 +69,74 @@ fn the_files_of_a_package_name_it() {
     }
 }
 
-/// The sketch and the header as a compiler of Arduino takes them, without a warning; under QEMU they have the bits of this machine.
-#[test]
-#[ignore = "wide"]
-fn the_library_of_arduino_has_the_same_bits_on_a_microcontroller() {
-    let folder = folder("package_arduino");
+/// Compiles the sketch SKETCH.ino with a file of the tests, as Arduino compiles it, without a warning.
+/// Returns the output on this machine; under QEMU a Cortex-M4F prints the same. `None` without a compiler.
+fn on_a_microcontroller(folder: &Path, program: &str) -> Option<String> {
     for (name, text) in [
-        ("board.cpp", include_str!("arduino/board.cpp")),
+        ("arduino.h", include_str!("arduino/arduino.h")),
+        ("gravity.cpp", include_str!("arduino/gravity.cpp")),
+        ("hobby.cpp", include_str!("arduino/hobby.cpp")),
         ("start.c", include_str!("arduino/start.c")),
         ("board.ld", include_str!("arduino/board.ld")),
     ] {
         fs::write(folder.join(name), text).expect("a file");
     }
-    let options = "-std=gnu++11 -Wall -Wextra -Werror -I library/src -I library/examples/gravity board.cpp";
+    let options = format!("-std=gnu++11 -Wall -Wextra -Werror -I library/src -I library/examples/gravity {program}.cpp");
     let board = "-mcpu=cortex-m4 -mthumb -mfloat-abi=hard -mfpu=fpv4-sp-d16 -O2";
-    let compile = |compiler: &str, options: &str| run(&folder, compiler, &options.split(' ').collect::<Vec<_>>());
-    let robot = root().join("robots/ur5.yaml").display().to_string();
-    check(&folder, &["generate", &robot, "--language", "c", "--package", "--scalar", "f32", "--out", "library"], 0);
-    let manifest = fs::read_to_string(folder.join("library/library.json")).expect("library.json");
-    let manifest: serde_json::Value = serde_json::from_str(&manifest).expect("JSON");
-    assert_eq!((&manifest["license"], &manifest["headers"]), (&"set me".into(), &"ur5.h".into()));
+    let compile = |compiler: &str, options: &str| run(folder, compiler, &options.split(' ').collect::<Vec<_>>());
     if !installed::there("g++", "g++") {
-        return;
+        return None;
     }
     if !installed::runs("sh", &["-c", "test -f \"$(arm-none-eabi-gcc -print-file-name=rdimon.specs)\""]) {
-        return installed::left_out("no compiler for microcontrollers here (Debian: gcc-arm-none-eabi, libnewlib-arm-none-eabi)");
+        installed::left_out("no compiler for microcontrollers here (Debian: gcc-arm-none-eabi, libnewlib-arm-none-eabi)");
+        return None;
     }
     compile("g++", &format!("{options} -o host"));
     compile("arm-none-eabi-gcc", &format!("{board} -c start.c"));
     // The driver of C compiles C++ all the same, and links no library of C++.
     let links = "-fno-exceptions start.o --specs=rdimon.specs -T board.ld -lm -o board.elf";
     compile("arm-none-eabi-gcc", &format!("{board} {options} {links}"));
-    let here = run(&folder, &folder.join("host").display().to_string(), &[]);
-    assert!(here.starts_with("0 -59.17"), "{here}");
+    let here = run(folder, &folder.join("host").display().to_string(), &[]);
     if installed::there("qemu-system-arm", "qemu-system-arm") {
         let qemu = "-M mps2-an386 -nographic -semihosting-config enable=on,target=native -kernel board.elf";
-        assert_eq!(run(&folder, "qemu-system-arm", &qemu.split(' ').collect::<Vec<_>>()), here);
+        assert_eq!(run(folder, "qemu-system-arm", &qemu.split(' ').collect::<Vec<_>>()), here);
+    }
+    Some(here)
+}
+
+/// The sketch of the package and a thousand states.
+#[test]
+#[ignore = "wide"]
+fn the_library_of_arduino_has_the_same_bits_on_a_microcontroller() {
+    let folder = folder("package_arduino");
+    let robot = root().join("robots/ur5.yaml").display().to_string();
+    check(&folder, &["generate", &robot, "--language", "c", "--package", "--scalar", "f32", "--out", "library"], 0);
+    let manifest = fs::read_to_string(folder.join("library/library.json")).expect("library.json");
+    let manifest: serde_json::Value = serde_json::from_str(&manifest).expect("JSON");
+    assert_eq!((&manifest["license"], &manifest["headers"]), (&"set me".into(), &"ur5.h".into()));
+    if let Some(said) = on_a_microcontroller(&folder, "gravity") {
+        assert!(said.starts_with("0 -59.17"), "{said}");
+    }
+}
+
+/// The commands of docs/hobby-arm.md, and its sketch.
+#[test]
+#[ignore = "wide"]
+fn the_tutorial_of_a_hobby_arm_prints_its_duties() {
+    let folder = folder("package_hobby");
+    let page = include_str!("../../docs/hobby-arm.md");
+    fs::create_dir_all(folder.join("robots")).expect("a folder");
+    fs::copy(root().join("robots/so101.urdf"), folder.join("robots/so101.urdf")).expect("a copy");
+    for commands in page.split("```sh\n").skip(1) {
+        for command in commands.split("```").next().expect("a block").lines() {
+            let arguments = shlex(command.strip_prefix("armgen ").expect("a command"));
+            check(&folder, &arguments.iter().map(String::as_str).collect::<Vec<_>>(), 0);
+        }
+    }
+    fs::rename(folder.join("so101_armgen"), folder.join("library")).expect("the library");
+    fs::write(folder.join("hobby.ino"), block(page, "cpp")).expect("a file");
+    if let Some(said) = on_a_microcontroller(&folder, "hobby") {
+        assert_eq!(said, block(page, "text"));
     }
 }
 

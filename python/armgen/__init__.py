@@ -391,7 +391,7 @@ class Robot:
         page = html.escape(self._arm.page(), quote=True)
         return (
             f'<iframe sandbox="allow-scripts" title="{html.escape(self.name)}" srcdoc="{page}" '
-            'style="width: 100%; height: 640px; border: 1px solid #ccc"></iframe>'
+            'style="box-sizing: border-box; width: 100%; height: 640px; border: 1px solid #ccc"></iframe>'
         )
 
     def generate(

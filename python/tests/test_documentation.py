@@ -1,7 +1,9 @@
 """The blocks of Python of the tutorial, and the notebooks, where matplotlib and nbclient are installed."""
 
+import os
 import pathlib
 import re
+import shutil
 import subprocess
 
 import pytest
@@ -44,8 +46,19 @@ def test_five_minutes(tmp_path, monkeypatch):
     assert count >= 5 and (tmp_path / "ur5.html").stat().st_size > 100_000
 
 
+def opens(cells, page):
+    """The HTML of nbconvert shows the robot in Chromium. MathJax and the like of nbconvert would be requests, so they are left out."""
+    nbconvert = pytest.importorskip("nbconvert")
+    for program in ("node", os.environ.get("CHROMIUM", "chromium")):
+        if not shutil.which(program):
+            pytest.skip(f"no `{program}` here")
+    others = {f"{name}_url": "" for name in ("jquery", "mathjax", "mermaid_js", "require_js")}
+    page.write_text(nbconvert.HTMLExporter(**others).from_notebook_node(cells)[0])
+    subprocess.run(["node", ROOT / "python/tests/notebook.mjs", page], check=True)
+
+
 @pytest.mark.parametrize("notebook", sorted((DOCS / "notebooks").glob("*.ipynb")), ids=lambda path: path.stem)
-def test_the_notebook(notebook):
+def test_the_notebook(notebook, tmp_path):
     nbformat, nbclient = pytest.importorskip("nbformat"), pytest.importorskip("nbclient")
     cells = nbformat.read(notebook, as_version=4)
     nbformat.validate(cells)
@@ -55,3 +68,4 @@ def test_the_notebook(notebook):
     if notebook.stem == "first-look":
         shown = [output.data["text/html"] for cell in code for output in cell.outputs if "text/html" in output.get("data", {})]
         assert len(shown) == 1 and "<iframe" in shown[0]
+        opens(cells, tmp_path / "notebook.html")

@@ -46,20 +46,29 @@ export class Browser {
         });
     }
 
-    /** A page of a file on the disk. @param {string} path @param {number} width */
-    async page(path, width = 1280) {
+    /**
+     * A page of a file on the disk. With `frames` its sandboxed frames wait for `frame()`.
+     * @param {string} path @param {number} width
+     */
+    async page(path, width = 1280, frames = false) {
         const { targetId } = await this.call("Target.createTarget", { url: "about:blank" });
         const { sessionId } = await this.call("Target.attachToTarget", { targetId, flatten: true });
-        const page = new Page(this, sessionId);
-        for (const domain of ["Runtime", "Log", "Network", "Page"]) await page.call(`${domain}.enable`);
+        const page = await new Page(this, sessionId).observed();
+        if (frames) await page.call("Target.setAutoAttach", { autoAttach: true, waitForDebuggerOnStart: true, flatten: true, filter: [{ type: "iframe" }] });
         await page.call("Emulation.setDeviceMetricsOverride", { width, height: 900, deviceScaleFactor: 1, mobile: width < 600 });
         await page.call("Page.navigate", { url: `file://${path}` });
         return page;
     }
 
+    /** A moment, while the browser works. */
+    static pause() {
+        return new Promise((done) => setTimeout(done, 20));
+    }
+
+    /** Ends the browser by its own means: killed, it leaves children that still write into its profile. */
     close() {
-        this.child.kill();
-        this.child.on("exit", () => rmSync(this.profile, { recursive: true, force: true, maxRetries: 5 }));
+        this.child.on("exit", () => rmSync(this.profile, { recursive: true, force: true, maxRetries: 20 }));
+        this.call("Browser.close").catch(() => this.child.kill());
     }
 }
 
@@ -75,6 +84,24 @@ class Page {
         return this.browser.call(method, params, this.session);
     }
 
+    /** The page, with its messages and requests as events. */
+    async observed() {
+        for (const domain of ["Runtime", "Log", "Network", "Page"]) await this.call(`${domain}.enable`);
+        return this;
+    }
+
+    /** The page in the first sandboxed frame, which has a session of its own. */
+    async frame() {
+        for (const end = Date.now() + LIMIT; Date.now() < end; await Browser.pause()) {
+            const attached = this.browser.events.find(({ method, sessionId }) => sessionId === this.session && method === "Target.attachedToTarget");
+            if (!attached) continue;
+            const frame = await new Page(this.browser, attached.params.sessionId).observed();
+            await frame.call("Runtime.runIfWaitingForDebugger");
+            return frame;
+        }
+        throw new Error("no frame");
+    }
+
     /** The value of an expression, after its promise. @param {string} expression */
     async run(expression) {
         const { result, exceptionDetails } = await this.call("Runtime.evaluate", { expression, awaitPromise: true, returnByValue: true });
@@ -86,7 +113,7 @@ class Page {
     async until(expression) {
         for (const end = Date.now() + LIMIT; Date.now() < end; ) {
             if (await this.run(expression).catch(() => false)) return;
-            await new Promise((done) => setTimeout(done, 20));
+            await Browser.pause();
         }
         throw new Error(`never: ${expression}\n${JSON.stringify(this.said())}`);
     }

@@ -1,14 +1,5 @@
-// Arduino as far as the sketch needs it; then the bits of gravity at a thousand states, as one number.
-#include <stdint.h>
-#include <stdio.h>
-#include <string.h>
-
-struct Port {
-    void begin(long) {}
-    void print(double x, int) { printf("%.9g", x); }
-    void print(const char *text) { printf("%s", text); }
-} Serial;
-void delay(unsigned long) {}
+// The sketch of a package; then the bits of gravity at a thousand states, as one number.
+#include "arduino.h"
 #include "gravity.ino"
 
 int main()
