@@ -209,7 +209,9 @@ fn piece(
         for group in filled.chunks(TOGETHER) {
             let mut signals = vec![[0.0; TOGETHER]; samples];
             for (signal, row) in signals.iter_mut().zip(full.chunks_exact(columns)) {
-                signal.iter_mut().zip(group).for_each(|(x, &column)| *x = row[column]);
+                for i in 0..group.len() {
+                    signal[i] = row[group[i]];
+                }
             }
             let filtered = filter.side_by_side(&signals);
             for (row, &k) in kept.iter().enumerate() {

@@ -142,7 +142,9 @@ impl LowPass {
         let margin = self.margin.min(n - 1);
         let reflected = |end: [f64; L], k: usize| {
             let mut at = x[k];
-            at.iter_mut().zip(end).for_each(|(x, end)| *x = 2.0 * end - *x);
+            for i in 0..L {
+                at[i] = 2.0 * end[i] - at[i];
+            }
             at
         };
         let before = (1..=margin).rev().map(|k| reflected(x[0], k));
@@ -157,22 +159,25 @@ impl LowPass {
     }
 
     fn run<'x, const L: usize>(&self, mut first: [f64; L], all: impl Iterator<Item = &'x mut [f64; L]>) {
-        let mut states = [[[0.0; 2]; L]; SECTIONS];
+        let mut states = [[[0.0; L]; 2]; SECTIONS];
         // At rest at the first value: each section passes a constant as it is.
         for (&[b0, b1, b2, a1, a2], states) in self.sections.iter().zip(&mut states) {
-            for ([s1, s2], x) in states.iter_mut().zip(&mut first) {
-                *s2 = (b2 - a2) * *x;
-                *s1 = (b1 - a1) * *x + *s2;
-                *x = b0 * *x + *s1;
+            let [s1, s2] = states;
+            for i in 0..L {
+                s2[i] = (b2 - a2) * first[i];
+                s1[i] = (b1 - a1) * first[i] + s2[i];
+                first[i] = b0 * first[i] + s1[i];
             }
         }
         for value in all {
             for (&[b0, b1, b2, a1, a2], states) in self.sections.iter().zip(&mut states) {
-                for ([s1, s2], x) in states.iter_mut().zip(value.iter_mut()) {
-                    let y = b0 * *x + *s1;
-                    *s1 = b1 * *x - a1 * y + *s2;
-                    *s2 = b2 * *x - a2 * y;
-                    *x = y;
+                let [s1, s2] = states;
+                for i in 0..L {
+                    let x = value[i];
+                    let y = b0 * x + s1[i];
+                    s1[i] = b1 * x - a1 * y + s2[i];
+                    s2[i] = b2 * x - a2 * y;
+                    value[i] = y;
                 }
             }
         }

@@ -79,8 +79,10 @@ impl Sums {
                     let mut of_rows = [0.0; BLOCK];
                     (first..last).for_each(|r| of_rows[r] = weights[rows[r]]);
                     for (to, from) in weighted.iter_mut().zip(block) {
-                        for ((to, from), w) in to.iter_mut().zip(from).zip(of_rows) {
-                            to.iter_mut().zip(from).for_each(|(to, x)| *to = w * x);
+                        for r in 0..BLOCK {
+                            for i in 0..LANES {
+                                to[r][i] = of_rows[r] * from[r][i];
+                            }
                         }
                     }
                     tiles[this].resize(of.width * of.width, [[0.0; LANES]; LANES]);
@@ -113,8 +115,10 @@ impl Sums {
             for (rows, block) in of.rows.chunks(BLOCK).zip(of.panels.chunks_exact(of.width)) {
                 let mut sums = [[0.0; LANES]; BLOCK];
                 for (panel, by) in block.iter().zip(&by) {
-                    for (sums, x) in sums.iter_mut().zip(panel) {
-                        sums.iter_mut().zip(x).zip(by).for_each(|((sum, x), by)| *sum += x * by);
+                    for r in 0..BLOCK {
+                        for i in 0..LANES {
+                            sums[r][i] += panel[r][i] * by[i];
+                        }
                     }
                 }
                 rows.iter().zip(&sums).for_each(|(&k, sum)| all[k] = sum.iter().sum());
@@ -136,9 +140,11 @@ impl Sums {
         for block in of.panels.chunks_exact(of.width) {
             let mut of_rows = [0.0; BLOCK];
             of_rows.iter_mut().zip(&mut values).for_each(|(to, value)| *to = value);
-            for (sums, panel) in lanes.iter_mut().zip(block) {
-                for (x, v) in panel.iter().zip(of_rows) {
-                    sums.iter_mut().zip(x).for_each(|(sum, x)| *sum += v * x);
+            for (sum, panel) in lanes.iter_mut().zip(block) {
+                for r in 0..BLOCK {
+                    for i in 0..LANES {
+                        sum[i] += of_rows[r] * panel[r][i];
+                    }
                 }
             }
         }
@@ -170,10 +176,13 @@ fn add(tiles: &mut [[Lanes; LANES]], left: &[Panel], right: &[Panel]) {
     let width = left.len();
     for (i, left) in left.iter().enumerate() {
         for (k, right) in right.iter().enumerate().skip(i) {
+            // By index: iterators over so short arrays are calls where they are not inlined.
             let mut sum = [[0.0; LANES]; LANES];
-            for (l, r) in left.iter().zip(right) {
-                for (sum, l) in sum.iter_mut().zip(l) {
-                    sum.iter_mut().zip(r).for_each(|(sum, r)| *sum += l * r);
+            for r in 0..BLOCK {
+                for a in 0..LANES {
+                    for b in 0..LANES {
+                        sum[a][b] += left[r][a] * right[r][b];
+                    }
                 }
             }
             for (tile, sum) in tiles[i * width + k].as_flattened_mut().iter_mut().zip(sum.as_flattened()) {
