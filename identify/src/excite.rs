@@ -12,6 +12,7 @@ mod motion;
 pub mod options;
 mod proof;
 mod search;
+mod simulated;
 mod tape;
 mod written;
 
