@@ -264,6 +264,7 @@ Exit codes: 0 equal, 1 not equal or faulty (the first entry that differs is name
   armgen excite robot.yaml
   armgen excite robot.yaml --out motion.csv --duration 20 --rate 250
   armgen excite robot.yaml --out motion.csv --options excite.yaml
+  armgen excite robot.yaml --out motion.csv --simulate arm.yaml        and motion.log.csv
 
 Limits are those of the description: velocity, acceleration or effort, position. Options give the
 posture of the start and a box for the origins of frames (docs/identification.md). Limits hold
@@ -307,7 +308,7 @@ Exit codes: 0 done, 1 the description, the options or a log is faulty, or parame
         /// File for the description with the identified numbers
         #[arg(long, value_name = "IDENTIFIED.yaml", value_hint = ValueHint::FilePath)]
         out: Option<PathBuf>,
-        /// Folder for report.json, report.html and the certificate
+        /// Folder for report.json, report.html, the certificate, and torques of each log
         #[arg(long, value_name = "DIR", value_hint = ValueHint::DirPath)]
         report: Option<PathBuf>,
         /// Leave faulty rows out, with a warning

@@ -1,4 +1,4 @@
-//! The pages of five minutes: their files are written, their commands run in order, and print the text below them.
+//! The pages of five minutes and the tutorial of identification: their files are written, their commands run in order, and print the text below them.
 
 use std::fs;
 use std::path::Path;
@@ -23,14 +23,14 @@ fn blocks(page: &str) -> Vec<(Option<String>, String, String)> {
     blocks
 }
 
-/// Runs a page of docs/start in a folder that has the robots of the repository.
+/// Runs a page of docs in a folder that has the robots of the repository.
 #[track_caller]
 fn follow(name: &str, tools: &[(&str, &str)]) {
     if !tools.iter().all(|(tool, package)| installed::there(tool, package)) {
         return;
     }
     let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("..").canonicalize().expect("the repository");
-    let folder = folder(&format!("start_{name}"));
+    let folder = folder(&name.replace('/', "_"));
     fs::create_dir(folder.join("robots")).expect("a folder");
     for robot in ["ur5", "scara"] {
         let robot = format!("robots/{robot}.yaml");
@@ -41,7 +41,7 @@ fn follow(name: &str, tools: &[(&str, &str)]) {
         std::iter::once(programs.to_path_buf()).chain(std::env::split_paths(&std::env::var_os("PATH").unwrap_or_default())),
     );
     let path = path.expect("a path");
-    let page = fs::read_to_string(root.join(format!("docs/start/{name}.md"))).expect("the page");
+    let page = fs::read_to_string(root.join(format!("docs/{name}.md"))).expect("the page");
     let (mut printed, mut compared) = (String::new(), 0);
     for (file, language, text) in blocks(&page) {
         match (file, language.as_str()) {
@@ -52,39 +52,45 @@ fn follow(name: &str, tools: &[(&str, &str)]) {
                 let output =
                     Command::new("sh").args(["-ec", &text]).current_dir(&folder).env("PATH", &path).output().expect("a shell");
                 let said = String::from_utf8_lossy(&output.stderr);
-                assert!(output.status.success(), "docs/start/{name}.md:\n{text}\n{said}");
+                assert!(output.status.success(), "docs/{name}.md:\n{text}\n{said}");
                 printed = String::from_utf8_lossy(&output.stdout).into_owned();
             }
             (None, "text") => {
-                assert_eq!(printed, text, "docs/start/{name}.md");
+                assert_eq!(printed, text, "docs/{name}.md");
                 compared += 1;
             }
-            (None, language) => panic!("docs/start/{name}.md: a block of {language} without the name of a file before it"),
+            (None, language) => panic!("docs/{name}.md: a block of {language} without the name of a file before it"),
         }
     }
-    assert!(compared > 0, "docs/start/{name}.md has no output to compare");
+    assert!(compared > 0, "docs/{name}.md has no output to compare");
 }
 
 #[test]
 #[ignore = "wide"]
 fn five_minutes_in_c() {
-    follow("c", &[("cc", "gcc")]);
+    follow("start/c", &[("cc", "gcc")]);
 }
 
 #[test]
 #[ignore = "wide"]
 fn five_minutes_in_rust() {
-    follow("rust", &[]);
+    follow("start/rust", &[]);
 }
 
 #[test]
 #[ignore = "wide"]
 fn five_minutes_in_a_browser() {
-    follow("browser", &[("node", "nodejs")]);
+    follow("start/browser", &[("node", "nodejs")]);
 }
 
 #[test]
 #[ignore = "wide"]
 fn five_minutes_in_octave() {
-    follow("matlab", &[("octave-cli", "octave")]);
+    follow("start/matlab", &[("octave-cli", "octave")]);
+}
+
+#[test]
+#[ignore = "wide"]
+fn from_a_moving_arm_to_a_certified_model() {
+    follow("identification-tutorial", &[]);
 }

@@ -291,8 +291,14 @@ impl Arm {
 
     /// Torques Y_b pi of states, state by state, without what is known.
     pub fn torque(&self, q: States<'_>, dq: States<'_>, ddq: States<'_>, pi: &[f64]) -> Vec<f64> {
-        let rows = self.regressor(q, dq, ddq);
-        rows.chunks_exact(pi.len()).map(|row| row.iter().zip(pi).map(|(y, pi)| y * pi).sum()).collect()
+        // In blocks that stay in a processor's cache.
+        let block = self.dof() * 128;
+        let mut tau = Vec::with_capacity(q.len());
+        for ((q, dq), ddq) in q.chunks(block).zip(dq.chunks(block)).zip(ddq.chunks(block)) {
+            let rows = self.regressor(q, dq, ddq);
+            tau.extend(rows.chunks_exact(pi.len()).map(|row| row.iter().zip(pi).map(|(y, pi)| y * pi).sum::<f64>()));
+        }
+        tau
     }
 
     /// g(q) of states, state by state: the gravity torque of base parameters, with that of rotor masses and without springs.

@@ -3,7 +3,7 @@
 use nalgebra::{DMatrix, DVector};
 
 use crate::arm::Arm;
-use crate::fit::{covariance, solve, solve_fast, Covariance, Equations, Gram, Row, Solution};
+use crate::fit::{covariance, solve, solve_fast, Covariance, Equations, Gram, Row, Solution, Sums};
 use crate::options::Load;
 use crate::prepare::{Friction, Piece};
 
@@ -166,18 +166,28 @@ impl<'a> Estimate<'a> {
         ten
     }
 
-    /// The equations of all columns, and by row the torque that is known.
-    pub fn equations(&self) -> (Equations, Vec<f64>) {
+    /// The equations, and by row the torque that is known. Columns of load and Stribeck friction take time: those that are neither active nor
+    /// fixed are 0, but for a candidate.
+    pub fn equations(&self, candidate: Option<Friction>) -> (Equations, Vec<f64>) {
         let (n, base) = (self.arm.dof(), self.arm.base.len());
         let columns = self.columns.len();
+        let rows = n * self.pieces.iter().map(|piece| piece.kept.len()).sum::<usize>();
         let mut equations = Equations { columns, ..Equations::default() };
-        let mut known = Vec::new();
+        equations.a.reserve_exact(rows * columns);
+        let mut known = Vec::with_capacity(rows);
         for (place, piece) in self.pieces.iter().enumerate() {
             let run = &self.runs[piece.log];
             let tau: Vec<Vec<f64>> = (0..n).map(|j| piece.delayed(j, self.delays[j])).collect();
-            let friction: Vec<Vec<f64>> = (0..n)
-                .flat_map(|j| Friction::ALL.map(|term| piece.friction(j, term, self.velocities[j], &self.sizes[place])))
-                .collect();
+            let is_wanted = |j: usize, term: Friction| {
+                let column = self.place(Column::Friction(run.session, j, term));
+                let is_fixed = || self.fixed.iter().any(|(place, value)| *place == column && *value != 0.0);
+                let takes_time = matches!(term, Friction::Load | Friction::Stribeck);
+                !takes_time || candidate == Some(term) || self.active.contains(&column) || is_fixed()
+            };
+            let column = |j: usize, term: Friction| {
+                is_wanted(j, term).then(|| piece.friction(j, term, self.velocities[j], &self.sizes[place]))
+            };
+            let friction: Vec<Option<Vec<f64>>> = (0..n).flat_map(|j| Friction::ALL.map(|term| column(j, term))).collect();
             let loads = run.load.is_there.then(|| self.place(Column::Load(piece.log, 0)));
             let known_load = self.known_load(piece.log);
             let first_friction = self.place(Column::Friction(run.session, 0, Friction::Viscous));
@@ -197,7 +207,7 @@ impl<'a> Estimate<'a> {
                         }
                     }
                     for term in 0..6 {
-                        a[first_friction + 6 * j + term] = friction[6 * j + term][row];
+                        a[first_friction + 6 * j + term] = friction[6 * j + term].as_ref().map_or(0.0, |column| column[row]);
                     }
                     let fixed: f64 = self.fixed.iter().map(|(place, value)| a[*place] * value).sum();
                     let this = piece.known[row * n + j] + of_load;
@@ -233,12 +243,11 @@ impl<'a> Estimate<'a> {
 
     /// Robust weights and the solution of the active columns.
     pub fn fit(&mut self, equations: &Equations) -> Gram {
-        let n = self.arm.dof();
-        let (weights, spreads) = equations.robust(&self.active, n);
-        let gram = equations.gram(&weights).of(&self.active);
+        let sums = Sums::new(equations, &self.active);
+        (self.weights, self.spreads) = equations.robust(&sums, self.arm.dof(), &self.weights);
+        let gram = sums.gram(&self.weights);
         let x = solve_fast(&gram);
         self.take(&x);
-        (self.weights, self.spreads) = (weights, spreads);
         gram
     }
 
@@ -254,31 +263,24 @@ impl<'a> Estimate<'a> {
 
     /// Delays of torques behind positions that lower the squares of their joint, all else fitted anew; s.
     pub fn delays(&mut self) {
-        let (equations, known) = self.equations();
+        let (equations, known) = self.equations(None);
         let n = self.arm.dof();
-        let grams = equations.grams(&self.weights, n, |k| equations.rows[k].joint);
-        let mut whole = Gram::zero(equations.columns);
+        let sums = Sums::new(&equations, &self.active);
+        let grams = sums.grams(&self.weights, n, |k| equations.rows[k].joint);
+        let mut whole = Gram::zero(self.active.len());
         grams.iter().for_each(|gram| whole.add(gram));
-        let whole = whole.of(&self.active);
         for j in 0..n {
-            let own = grams[j].of(&self.active);
-            let of_joint: Vec<usize> = (0..equations.rows.len()).filter(|&k| equations.rows[k].joint == j).collect();
+            let own = &grams[j];
+            let rows = sums.rows(j);
+            // What is known of a torque.
+            let fixed = |k: usize| self.fixed.iter().map(|(place, value)| equations.row(k)[*place] * value).sum::<f64>();
+            let known: Vec<f64> = rows.iter().map(|&k| known[k] + fixed(k)).collect();
             let cost = |delay: f64| {
-                let mut tau = Vec::new();
-                self.pieces.iter().for_each(|piece| tau.extend(piece.delayed(j, delay)));
-                let (mut g, mut bb) = (DVector::zeros(self.active.len()), 0.0);
-                for (&k, tau) in of_joint.iter().zip(&tau) {
-                    let w = self.weights[k];
-                    if w > 0.0 {
-                        let row = equations.row(k);
-                        let fixed: f64 = self.fixed.iter().map(|(place, value)| row[*place] * value).sum();
-                        let b = tau * self.corrections[j] - known[k] - fixed;
-                        for (place, &i) in self.active.iter().enumerate() {
-                            g[place] += w * row[i] * b;
-                        }
-                        bb += w * b * b;
-                    }
-                }
+                let tau = self.pieces.iter().flat_map(|piece| piece.delayed(j, delay));
+                let b: Vec<f64> = tau.zip(&known).map(|(tau, known)| tau * self.corrections[j] - known).collect();
+                let weighted = rows.iter().zip(&b).map(|(&k, b)| self.weights[k] * b);
+                let bb = weighted.clone().zip(&b).map(|(wb, b)| wb * b).sum();
+                let g = sums.times(j, weighted);
                 let total = Gram { h: whole.h.clone(), g: &whole.g - &own.g + &g, bb: 0.0 };
                 let x = solve_fast(&total);
                 Gram { h: own.h.clone(), g, bb }.squares(&x)
@@ -302,7 +304,7 @@ impl<'a> Estimate<'a> {
     /// Adds a term of friction to the joints whose residual of cross-validation in blocks of time it lowers; `chosen` has what there is.
     pub fn choose(&mut self, chosen: &mut [Vec<Friction>], candidate: Friction) {
         let n = self.arm.dof();
-        let (equations, _) = self.equations();
+        let (equations, _) = self.equations(Some(candidate));
         let bounds: Vec<(f64, f64)> = (0..self.runs.len())
             .map(|log| {
                 let times = equations.rows.iter().filter(|row| row.log == log).map(|row| row.time);
@@ -314,23 +316,39 @@ impl<'a> Estimate<'a> {
             let (start, end) = bounds[row.log];
             ((FOLDS as f64 * (row.time - start) / (end - start).max(1e-9)) as usize).min(FOLDS - 1)
         };
-        let grams = equations.grams(&self.weights, n * FOLDS, |k| equations.rows[k].joint * FOLDS + fold(k));
-        let mut folds = vec![Gram::zero(equations.columns); FOLDS];
+        let fixed: Vec<usize> = self.fixed.iter().map(|(place, _)| *place).collect();
+        // Active columns, and all that may come.
+        let mut columns = self.active.clone();
+        for joint in (0..n).filter(|&joint| !chosen[joint].contains(&candidate)) {
+            columns.extend((0..self.sessions).map(|session| self.place(Column::Friction(session, joint, candidate))));
+        }
+        columns.retain(|place| !fixed.contains(place));
+        columns.sort_unstable();
+        columns.dedup();
+        let sums = Sums::new(&equations, &columns);
+        let grams = sums.grams(&self.weights, n * FOLDS, |k| equations.rows[k].joint * FOLDS + fold(k));
+        let mut folds = vec![Gram::zero(columns.len()); FOLDS];
         for (class, gram) in grams.iter().enumerate() {
             folds[class % FOLDS].add(gram);
         }
-        let mut whole = Gram::zero(equations.columns);
+        let mut whole = Gram::zero(columns.len());
         folds.iter().for_each(|gram| whole.add(gram));
-        let scores = |active: &[usize], joint: usize| -> Vec<f64> {
-            (0..FOLDS)
-                .map(|f| {
-                    let mut rest = whole.of(active);
-                    rest.subtract(&folds[f].of(active));
-                    grams[joint * FOLDS + f].of(active).squares(&solve_fast(&rest))
-                })
-                .collect()
+        // Of each fold the solution of the others, and what it leaves of a joint.
+        let places =
+            |active: &[usize]| -> Vec<usize> { active.iter().filter_map(|place| columns.binary_search(place).ok()).collect() };
+        let solutions = |places: &[usize]| -> Vec<DVector<f64>> {
+            let rest = |fold: &Gram| {
+                let mut rest = whole.of(places);
+                rest.subtract(&fold.of(places));
+                rest
+            };
+            folds.iter().map(|fold| solve_fast(&rest(fold))).collect()
         };
-        let fixed: Vec<usize> = self.fixed.iter().map(|(place, _)| *place).collect();
+        let scores = |places: &[usize], solutions: &[DVector<f64>], joint: usize| -> Vec<f64> {
+            solutions.iter().enumerate().map(|(f, x)| grams[joint * FOLDS + f].of(places).squares(x)).collect()
+        };
+        let own = places(&self.active);
+        let of_own = solutions(&own);
         let mut taken = self.active.clone();
         for joint in 0..n {
             if chosen[joint].contains(&candidate) {
@@ -343,7 +361,8 @@ impl<'a> Estimate<'a> {
             if active.len() == self.active.len() {
                 continue;
             }
-            let (before, after) = (scores(&self.active, joint), scores(&active, joint));
+            let with = places(&active);
+            let (before, after) = (scores(&own, &of_own, joint), scores(&with, &solutions(&with), joint));
             let gains: Vec<f64> = before.iter().zip(&after).map(|(before, after)| before - after).collect();
             let (gain, all) = (gains.iter().sum::<f64>(), before.iter().sum::<f64>());
             let wanted = match candidate {
@@ -380,12 +399,17 @@ impl<'a> Estimate<'a> {
         }
     }
 
-    /// The velocity of Stribeck friction of a joint with the least residual, among those that the log shows: from where the sign of the rate is
-    /// certain to half of the highest rate. False: the least is at an end, and nothing changes.
-    pub fn stribeck_velocity(&mut self, joint: usize) -> bool {
-        let n = self.arm.dof();
-        let (equations, _) = self.equations();
+    /// The velocities of Stribeck friction of some joints. False: that of the joint is at an end of those that the log shows, and stays.
+    pub fn stribeck_velocities(&mut self, is_wanted: &dyn Fn(usize) -> bool) -> Vec<bool> {
+        let (equations, _) = self.equations(None);
         let residuals = equations.residuals(&self.active, &DVector::from_fn(self.active.len(), |k, _| self.x[self.active[k]]));
+        (0..self.arm.dof()).map(|joint| is_wanted(joint) && self.stribeck_velocity(joint, &equations, &residuals)).collect()
+    }
+
+    /// The velocity of Stribeck friction of a joint with the least residual, among those that the log shows: from where the sign of the rate is
+    /// certain to half of the highest rate.
+    fn stribeck_velocity(&mut self, joint: usize, equations: &Equations, residuals: &[f64]) -> bool {
+        let n = self.arm.dof();
         let of: Vec<usize> = (0..residuals.len()).filter(|&k| equations.rows[k].joint == joint).collect();
         // Friction is that of a session, the velocity that of all.
         let sessions = 1 + self.runs.iter().map(|run| run.session).max().unwrap_or(0);
@@ -448,9 +472,8 @@ impl<'a> Estimate<'a> {
     /// The solution with intervals, for the columns that are active.
     pub fn finish(&mut self) -> (Equations, Solution, Covariance) {
         let n = self.arm.dof();
-        let (equations, _) = self.equations();
-        self.fit(&equations);
-        let gram = equations.gram(&self.weights).of(&self.active);
+        let (equations, _) = self.equations(None);
+        let gram = self.fit(&equations);
         let mut start = DVector::zeros(self.active.len());
         let nominal = &self.arm.combination * self.arm.nominal();
         for (k, &place) in self.active.iter().enumerate() {
@@ -468,10 +491,17 @@ impl<'a> Estimate<'a> {
     /// The covariance of the active columns. Velocities of Stribeck friction were found from the logs, too: their columns are part of it.
     fn covariance(&self, equations: &Equations, residuals: &[f64], solution: &Solution, n: usize) -> Covariance {
         let step = 1e-3;
+        let of_stribeck = |&place: &usize| match self.columns[place] {
+            Column::Friction(session, joint, Friction::Stribeck) => Some((place, session, joint)),
+            _ => None,
+        };
+        let stribeck: Vec<(usize, usize, usize)> = self.active.iter().filter_map(of_stribeck).collect();
+        if stribeck.is_empty() {
+            return covariance(equations, &self.active, residuals, &self.weights, &solution.inverse, n);
+        }
         let mut extended = equations.clone();
         let mut active = self.active.clone();
-        for &place in &self.active {
-            let Column::Friction(session, joint, Friction::Stribeck) = self.columns[place] else { continue };
+        for (place, session, joint) in stribeck {
             // Columns of gains are empty where no gain is found.
             let slope = self.place(Column::Gain(joint));
             let column = |velocity: f64| -> Vec<f64> {
@@ -488,10 +518,8 @@ impl<'a> Estimate<'a> {
             }
             active.extend((!active.contains(&slope)).then_some(slope));
         }
-        if active.len() == self.active.len() {
-            return covariance(equations, &active, residuals, &self.weights, &solution.inverse, n);
-        }
-        let whole = solve(&extended.gram(&self.weights).of(&active), &DVector::zeros(active.len()));
+        let gram = Sums::new(&extended, &active).gram(&self.weights);
+        let whole = solve(&gram, &DVector::zeros(active.len()));
         let found = covariance(&extended, &active, residuals, &self.weights, &whole.inverse, n);
         let own = self.active.len();
         Covariance { matrix: found.matrix.view((0, 0), (own, own)).into_owned(), ..found }
@@ -504,7 +532,7 @@ impl<'a> Estimate<'a> {
     pub fn gains(&mut self, held: &[bool]) -> (Vec<f64>, Vec<f64>, DMatrix<f64>, f64) {
         let n = self.arm.dof();
         self.corrections = vec![1.0; n];
-        let (mut equations, known) = self.equations();
+        let (mut equations, known) = self.equations(None);
         let fixed: Vec<f64> = (0..equations.b.len())
             .map(|k| self.fixed.iter().map(|(place, value)| equations.row(k)[*place] * value).sum())
             .collect();
@@ -541,7 +569,7 @@ impl<'a> Estimate<'a> {
             if round < 6 {
                 (self.weights, spreads) = equations.weights(&residuals, n);
             }
-            let gram = equations.gram(&self.weights).of(&active);
+            let gram = Sums::new(&equations, &active).gram(&self.weights);
             let solution = solve(&gram, &DVector::zeros(active.len()));
             inverse = solution.inverse;
             let mut step = solution.x;

@@ -12,6 +12,7 @@ mod motion;
 pub mod options;
 mod proof;
 mod search;
+mod simulated;
 mod tape;
 mod written;
 
@@ -25,7 +26,6 @@ pub use motion::{Course, LeadIn, Motion};
 pub use proof::{Kind, Margin, Proof, Unproved};
 
 use crate::arm::Arm;
-use crate::prepare::Friction;
 use model::{slides, Frame, Model};
 use options::Options;
 use search::{Bound, Random, Search};
@@ -411,10 +411,8 @@ fn information(arm: &Arm, model: &Model, scale: &[f64], motion: &Motion) -> (f64
         row.fill(0.0);
         row[..model.base].copy_from_slice(of);
         for (column, &(_, term)) in model.columns.iter().enumerate().filter(|(_, (of, _))| *of == joint) {
-            row[model.base + column] = match term {
-                Friction::Coulomb | Friction::Load | Friction::Stribeck if x[1][k] == 0.0 => 0.0,
-                term => term.column(x[1][k], f64::MIN_POSITIVE, g[k].abs(), model.friction[joint].velocity),
-            };
+            let sign = if x[1][k] == 0.0 { 0.0 } else { x[1][k].signum() };
+            row[model.base + column] = term.column(x[1][k], sign, g[k].abs(), model.friction[joint].velocity);
         }
         for (i, a) in row.iter().enumerate().filter(|(_, a)| **a != 0.0) {
             let a = a / (scale[joint] * scale[joint] * REPORTED as f64);

@@ -1,8 +1,12 @@
 //! Weighted least squares on rows of joints: Gram matrices, robust weights, standard errors that hold for coloured residuals.
 
+mod sums;
+
 use nalgebra::{DMatrix, DVector, SymmetricEigen};
 
-use crate::signal::spread;
+use crate::signal::{rms, spread};
+
+pub use sums::Sums;
 
 /// A row of the equations: a joint at a time.
 #[derive(Clone, Copy, Debug)]
@@ -148,40 +152,9 @@ impl Equations {
         &self.a[k * self.columns..(k + 1) * self.columns]
     }
 
-    /// Gram matrices by class of row: `class` gives the class of a row, below `classes`.
-    pub fn grams(&self, weights: &[f64], classes: usize, class: impl Fn(usize) -> usize) -> Vec<Gram> {
-        let n = self.columns;
-        let mut all = vec![Gram::zero(n); classes];
-        let mut filled = Vec::with_capacity(n);
-        for (k, &w) in weights.iter().enumerate().filter(|(_, w)| **w > 0.0) {
-            let (row, b) = (self.row(k), self.b[k]);
-            let Gram { h, g, bb } = &mut all[class(k)];
-            filled.clear();
-            filled.extend((0..n).filter(|&i| row[i] != 0.0));
-            let h = h.as_mut_slice();
-            for (place, &i) in filled.iter().enumerate() {
-                let wa = w * row[i];
-                g[i] += wa * b;
-                for &j in &filled[place..] {
-                    h[i * n + j] += wa * row[j];
-                }
-            }
-            *bb += w * b * b;
-        }
-        for gram in &mut all {
-            for i in 0..n {
-                for j in 0..i {
-                    // Column i of the slice holds the entries below the diagonal.
-                    gram.h[(j, i)] = gram.h[(i, j)];
-                }
-            }
-        }
-        all
-    }
-
-    /// A'WA, A'Wb, b'Wb.
+    /// A'WA, A'Wb, b'Wb of all columns.
     pub fn gram(&self, weights: &[f64]) -> Gram {
-        self.grams(weights, 1, |_| 0).pop().expect("one class")
+        Sums::new(self, &(0..self.columns).collect::<Vec<_>>()).gram(weights)
     }
 
     /// b - A x.
@@ -196,43 +169,44 @@ impl Equations {
 
     /// Robust weights of residuals: 1/s_j² times Huber's weight at 1.5 s_j; and s_j, by joint.
     pub fn weights(&self, residuals: &[f64], joints: usize) -> (Vec<f64>, Vec<f64>) {
-        let spreads: Vec<f64> = (0..joints)
-            .map(|j| {
-                let of: Vec<f64> =
-                    (0..self.b.len()).filter(|&k| self.rows[k].joint == j && self.rows[k].counts).map(|k| residuals[k]).collect();
-                let size: Vec<f64> =
-                    (0..self.b.len()).filter(|&k| self.rows[k].joint == j && self.rows[k].counts).map(|k| self.b[k]).collect();
-                // An exact fit has residuals of rounding alone.
-                spread(&of).max(1e-9 * crate::signal::rms(&size)).max(f64::MIN_POSITIVE.sqrt())
-            })
+        let spreads: Vec<f64> = self
+            .of_joints(residuals, joints, true)
+            .iter()
+            .zip(self.of_joints(&self.b, joints, true))
+            // An exact fit has residuals of rounding alone.
+            .map(|(of, size)| spread(of).max(1e-9 * rms(&size)).max(f64::MIN_POSITIVE.sqrt()))
             .collect();
-        let weights = (0..self.b.len())
-            .map(|k| {
-                let s = spreads[self.rows[k].joint];
-                if !self.rows[k].counts {
-                    return 0.0;
-                }
-                (1.5 * s / residuals[k].abs().max(1.5 * s)) / (s * s)
-            })
-            .collect();
+        let weight = |(row, residual): (&Row, &f64)| {
+            let s = spreads[row.joint];
+            if row.counts {
+                (1.5 * s / residual.abs().max(1.5 * s)) / (s * s)
+            } else {
+                0.0
+            }
+        };
+        let weights = self.rows.iter().zip(residuals).map(weight).collect();
         (weights, spreads)
     }
 
-    /// Five rounds of robust weights; the weights and the spreads.
-    pub fn robust(&self, active: &[usize], joints: usize) -> (Vec<f64>, Vec<f64>) {
-        let mut weights: Vec<f64> = {
-            let size: Vec<f64> = (0..joints)
-                .map(|j| {
-                    let of: Vec<f64> = self.rows.iter().zip(&self.b).filter(|(row, _)| row.joint == j).map(|(_, b)| *b).collect();
-                    crate::signal::rms(&of).max(1e-12)
-                })
-                .collect();
-            self.rows.iter().map(|row| if row.counts { 1.0 / (size[row.joint] * size[row.joint]) } else { 0.0 }).collect()
-        };
+    /// Values of rows by joint, those of rows that count alone where that is wanted.
+    fn of_joints(&self, values: &[f64], joints: usize, counting: bool) -> Vec<Vec<f64>> {
+        let mut of = vec![Vec::with_capacity(self.rows.len() / joints.max(1) + 1); joints];
+        for (row, value) in self.rows.iter().zip(values).filter(|(row, _)| row.counts || !counting) {
+            of[row.joint].push(*value);
+        }
+        of
+    }
+
+    /// Robust weights and spreads: five rounds, or two from the weights of nearly the same equations.
+    pub fn robust(&self, sums: &Sums, joints: usize, before: &[f64]) -> (Vec<f64>, Vec<f64>) {
+        let size: Vec<f64> = self.of_joints(&self.b, joints, false).iter().map(|of| rms(of).max(1e-12)).collect();
+        let first = |row: &Row| if row.counts { 1.0 / (size[row.joint] * size[row.joint]) } else { 0.0 };
+        let is_first = before.len() != self.rows.len();
+        let mut weights: Vec<f64> = if is_first { self.rows.iter().map(first).collect() } else { before.to_vec() };
         let mut spreads = vec![1.0; joints];
-        for _ in 0..5 {
-            let x = solve_fast(&self.gram(&weights).of(active));
-            (weights, spreads) = self.weights(&self.residuals(active, &x), joints);
+        for _ in 0..if is_first { 5 } else { 2 } {
+            let x = solve_fast(&sums.gram(&weights));
+            (weights, spreads) = self.weights(&sums.residuals(&x), joints);
         }
         (weights, spreads)
     }

@@ -9,7 +9,7 @@ use nalgebra::{DMatrix, DVector};
 use crate::arm::Arm;
 use crate::estimate::{Column, Estimate, Run};
 use crate::finding::{Code, Finding, Findings};
-use crate::fit::{Gram, Solution, FEW_BLOCKS};
+use crate::fit::{Gram, Solution, Sums, FEW_BLOCKS};
 use crate::judge::{judge, Judgement, Model};
 use crate::log::Log;
 use crate::options::{Gains, Load, Options};
@@ -144,7 +144,7 @@ pub fn identify(arm: &Arm, inputs: &[Input], options: &Options, findings: &mut F
     let slowest = logs.iter().map(|log| 1.0 / period(&log.t)).fold(f64::INFINITY, f64::min);
     let highest = (0.1 * slowest).max(3.0f64.min(0.2 * slowest));
     let all = |cutoff: f64| -> Vec<Piece> {
-        logs.iter().enumerate().flat_map(|(place, log)| prepare(arm, place, log, cutoff, &flawed[place])).collect()
+        logs.iter().enumerate().flat_map(|(place, log)| prepare(arm, place, log, cutoff, &flawed[place], true)).collect()
     };
     let mut cutoff = options.cutoff.unwrap_or(highest);
     let mut pieces = all(cutoff);
@@ -159,7 +159,7 @@ pub fn identify(arm: &Arm, inputs: &[Input], options: &Options, findings: &mut F
         let mut first = Estimate::new(arm, &pieces, &runs, sessions.len());
         fix(arm, options, &mut first);
         first.activate(&simple);
-        let (equations, _) = first.equations();
+        let (equations, _) = first.equations(None);
         first.fit(&equations);
         let chosen = cutoff_of(&first, highest);
         if chosen < cutoff {
@@ -178,7 +178,7 @@ pub fn identify(arm: &Arm, inputs: &[Input], options: &Options, findings: &mut F
         findings.push(Finding::new(Code::NoMotion, &logs[0].name, text, help));
         return None;
     }
-    let (equations, _) = estimate.equations();
+    let (equations, _) = estimate.equations(None);
     estimate.fit(&equations);
     if suspect::torques(&estimate, &logs[0].name, findings) {
         return None;
@@ -199,7 +199,7 @@ pub fn identify(arm: &Arm, inputs: &[Input], options: &Options, findings: &mut F
     let mut chosen: Vec<Vec<Friction>> = vec![wanted; n];
     let activate = |estimate: &mut Estimate<'_>, chosen: &[Vec<Friction>]| {
         estimate.activate(&|joint, term| chosen[joint].contains(&term));
-        let (equations, _) = estimate.equations();
+        let (equations, _) = estimate.equations(None);
         estimate.fit(&equations);
     };
     activate(&mut estimate, &chosen);
@@ -212,15 +212,13 @@ pub fn identify(arm: &Arm, inputs: &[Input], options: &Options, findings: &mut F
     }
     if options.friction.is_none() {
         // Cubic friction alone takes a part of Stribeck friction, so it comes last.
-        let inside: Vec<bool> = (0..n).map(|j| estimate.stribeck_velocity(j)).collect();
+        let inside = estimate.stribeck_velocities(&|_| true);
         let mut with = chosen.clone();
         estimate.choose(&mut with, Friction::Stribeck);
         (0..n).filter(|&j| inside[j]).for_each(|j| chosen[j].clone_from(&with[j]));
         activate(&mut estimate, &chosen);
         for _ in 0..2 {
-            (0..n).filter(|&j| chosen[j].contains(&Friction::Stribeck)).for_each(|j| {
-                estimate.stribeck_velocity(j);
-            });
+            estimate.stribeck_velocities(&|j| chosen[j].contains(&Friction::Stribeck));
             activate(&mut estimate, &chosen);
         }
         estimate.choose(&mut chosen, Friction::Cubic);
@@ -464,7 +462,7 @@ fn cutoff_of(estimate: &Estimate<'_>, highest: f64) -> f64 {
                 .skip(j)
                 .step_by(n)
                 .map(|(k, tau)| {
-                    let of = |&(term, value): &(Friction, f64)| value * term.column(piece.dq[k], piece.eps[j], 0.0, 1.0);
+                    let of = |&(term, value): &(Friction, f64)| value * term.column(piece.dq[k], piece.signs[k], 0.0, 1.0);
                     tau + friction.iter().map(of).sum::<f64>()
                 })
                 .collect();
@@ -583,13 +581,16 @@ fn reduce(estimate: &Estimate<'_>, equations: &crate::fit::Equations, session: u
     };
     let kept: Vec<usize> = estimate.active.iter().copied().filter(|&place| is_kept(place)).collect();
     let others: Vec<usize> = estimate.active.iter().copied().filter(|&place| !is_kept(place)).collect();
-    let whole = equations.gram(&estimate.weights);
-    let mut gram = whole.of(&kept);
+    let whole = Sums::new(equations, &estimate.active).gram(&estimate.weights);
+    let places =
+        |of: &[usize]| -> Vec<usize> { of.iter().filter_map(|place| estimate.active.binary_search(place).ok()).collect() };
+    let (of_kept, of_others) = (places(&kept), places(&others));
+    let mut gram = whole.of(&of_kept);
     if !others.is_empty() {
-        let other = whole.of(&others);
+        let other = whole.of(&of_others);
         let zero = DVector::zeros(others.len());
         let inverse = crate::fit::solve(&other, &zero).inverse;
-        let mixed = DMatrix::from_fn(kept.len(), others.len(), |i, j| whole.h[(kept[i], others[j])]);
+        let mixed = DMatrix::from_fn(kept.len(), others.len(), |i, j| whole.h[(of_kept[i], of_others[j])]);
         let half = &mixed * &inverse;
         gram.h -= &half * mixed.transpose();
         gram.g -= &half * &other.g;

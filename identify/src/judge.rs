@@ -65,6 +65,24 @@ pub struct Judgement {
     pub contacts: Vec<Contact>,
 }
 
+impl Judgement {
+    /// Samples as CSV: t, then q, dq, measured and predicted torque of each joint, filtered as they are judged.
+    pub fn csv(&self, arm: &Arm) -> String {
+        let signals = [("q", &self.positions), ("dq", &self.rates), ("measured", &self.measured), ("predicted", &self.predicted)];
+        let mut text = String::from("t");
+        for (prefix, _) in signals {
+            arm.joints.iter().for_each(|joint| text += &format!(",{prefix}_{}", joint.name));
+        }
+        text.push('\n');
+        for (k, t) in self.times.iter().enumerate() {
+            text += &format!("{t:.6}");
+            signals.iter().flat_map(|(_, joints)| joints.iter()).for_each(|x| text += &format!(",{:.7}", x[k] + 0.0));
+            text.push('\n');
+        }
+        text
+    }
+}
+
 /// Slower is standstill, rad/s or m/s.
 const SLOW: f64 = 0.02;
 
@@ -72,7 +90,7 @@ const SLOW: f64 = 0.02;
 pub fn judge(arm: &Arm, log: &Log, model: &Model) -> Judgement {
     let n = arm.dof();
     let rate = 1.0 / crate::signal::period(&log.t);
-    let pieces = prepare(arm, 0, log, CUTOFF.min(0.2 * rate), &[]);
+    let pieces = prepare(arm, 0, log, CUTOFF.min(0.2 * rate), &[], model.covariance.is_some());
     let mut judgement = Judgement {
         measured: vec![Vec::new(); n],
         predicted: vec![Vec::new(); n],
@@ -91,7 +109,11 @@ pub fn judge(arm: &Arm, log: &Log, model: &Model) -> Judgement {
                     gravity[j].push(sizes[piece.kept[row] * n + j].abs());
                 }
             }
-            (0..n).map(|j| torque(arm, piece, model, j, &sizes)).collect()
+            let mut torques = piece.torques(arm, &model.pi);
+            for (j, all) in torques.iter_mut().enumerate() {
+                add_friction(all, piece, model, j, &sizes);
+            }
+            torques
         })
         .collect();
     judgement.delays = match &model.delays {
@@ -174,20 +196,12 @@ fn contacts(times: &[f64], joints: usize, beyond: &dyn Fn(usize, usize) -> bool)
     joined
 }
 
-fn torque(arm: &Arm, piece: &Piece, model: &Model, j: usize, sizes: &[f64]) -> Vec<f64> {
-    let (n, base) = (arm.dof(), arm.base.len());
-    let mut all: Vec<f64> = (0..piece.kept.len())
-        .map(|row| {
-            let y = &piece.y[(row * n + j) * base..(row * n + j + 1) * base];
-            piece.known[row * n + j] + y.iter().zip(&model.pi).map(|(y, pi)| y * pi).sum::<f64>()
-        })
-        .collect();
+fn add_friction(all: &mut [f64], piece: &Piece, model: &Model, j: usize, sizes: &[f64]) {
     for (term, value) in Friction::ALL.into_iter().zip(model.friction[j]).filter(|(_, value)| *value != 0.0) {
         for (sum, column) in all.iter_mut().zip(piece.friction(j, term, model.velocities[j], sizes)) {
             *sum += value * column;
         }
     }
-    all
 }
 
 fn best_delay(pieces: &[Piece], predicted: &[Vec<Vec<f64>>], j: usize) -> f64 {

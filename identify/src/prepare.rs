@@ -48,16 +48,15 @@ impl Friction {
         matches!(self, Friction::Viscous | Friction::Coulomb | Friction::Load | Friction::Stribeck)
     }
 
-    /// The column at a rate; `eps` smooths the sign, `size` is |g| of the joint, `velocity` that of Stribeck friction.
-    pub fn column(self, dq: f64, eps: f64, size: f64, velocity: f64) -> f64 {
-        let sign = || (dq / eps).tanh();
+    /// The column at a rate with a sign; `size` is |g| of the joint, `velocity` that of Stribeck friction.
+    pub fn column(self, dq: f64, sign: f64, size: f64, velocity: f64) -> f64 {
         match self {
             Friction::Viscous => dq,
-            Friction::Coulomb => sign(),
+            Friction::Coulomb => sign,
             Friction::Offset => 1.0,
-            Friction::Load => sign() * size,
+            Friction::Load => sign * size,
             Friction::Cubic => dq * dq * dq,
-            Friction::Stribeck => sign() * (-dq.abs() / velocity).exp(),
+            Friction::Stribeck => sign * (-dq.abs() / velocity).exp(),
         }
     }
 }
@@ -81,7 +80,7 @@ pub struct Piece {
     pub tau: Vec<Vec<f64>>,
     /// Samples that are kept.
     pub kept: Vec<usize>,
-    /// Filtered Y_b of the kept samples, state by state, row by row.
+    /// Filtered Y_b of the kept samples, state by state, row by row; empty where it is not wanted.
     pub y: Vec<f64>,
     /// Filtered known torques of the kept samples, state by state.
     pub known: Vec<f64>,
@@ -89,6 +88,8 @@ pub struct Piece {
     pub counts: Vec<bool>,
     /// Smoothing of the sign, by joint.
     pub eps: Vec<f64>,
+    /// Smooth signs of the rates, state by state.
+    pub signs: Vec<f64>,
     /// The low pass.
     pub filter: LowPass,
     /// Filtered columns of friction that depend on rates alone, by joint.
@@ -97,6 +98,9 @@ pub struct Piece {
 
 /// These terms.
 const OF_RATES: [Friction; 3] = [Friction::Viscous, Friction::Coulomb, Friction::Cubic];
+
+/// Columns that are filtered side by side.
+const TOGETHER: usize = 4;
 
 /// Samples of a stretch that are filtered at once.
 const LONGEST: usize = 16_384;
@@ -107,8 +111,9 @@ const LEAST_EPS: f64 = 0.003;
 /// How long a rate keeps its sign where friction at low rates counts, s.
 const STEADY: f64 = 0.1;
 
-/// The stretches of a log on grids of its median period. `flawed` are stretches of time with torques that do not count, by joint.
-pub fn prepare(arm: &Arm, place: usize, log: &Log, cutoff: f64, flawed: &[Vec<Range<f64>>]) -> Vec<Piece> {
+/// The stretches of a log on grids of its median period. `flawed` are stretches of time with torques that do not count, by joint. Without
+/// `columns` there is no filtered Y_b.
+pub fn prepare(arm: &Arm, place: usize, log: &Log, cutoff: f64, flawed: &[Vec<Range<f64>>], columns: bool) -> Vec<Piece> {
     let period = period(&log.t);
     let rate = 1.0 / period;
     let margin = (4.0 / cutoff * rate).ceil() as usize;
@@ -131,7 +136,7 @@ pub fn prepare(arm: &Arm, place: usize, log: &Log, cutoff: f64, flawed: &[Vec<Ra
                     interpolate(t, x, grid)
                 }
             };
-            all.push(piece(arm, place, log, cutoff, flawed, &on_grid, grid, margin));
+            all.push(piece(arm, place, log, cutoff, flawed, columns, &on_grid, grid, margin));
             if last == samples {
                 break;
             }
@@ -148,6 +153,7 @@ fn piece(
     log: &Log,
     cutoff: f64,
     flawed: &[Vec<Range<f64>>],
+    with_columns: bool,
     on_grid: &dyn Fn(&[f64]) -> Vec<f64>,
     grid: &[f64],
     margin: usize,
@@ -195,27 +201,31 @@ fn piece(
             moves && !flawed.get(i).is_some_and(|flawed| flawed.iter().any(|stretch| stretch.contains(&grid[k])))
         })
         .collect();
-    let full = arm.regressor(&q, &dq, &ddq);
-    let columns = full.len() / samples;
     let keep = |full: &[f64], columns: usize| {
         let mut kept_rows = vec![0.0; kept.len() * columns];
-        let mut one = vec![0.0; samples];
-        for column in 0..columns {
-            (0..samples).for_each(|k| one[k] = full[k * columns + column]);
-            if one.iter().all(|x| *x == 0.0) {
-                continue;
+        let mut is_zero = vec![true; columns];
+        full.chunks_exact(columns).for_each(|row| is_zero.iter_mut().zip(row).for_each(|(zero, x)| *zero &= *x == 0.0));
+        let filled: Vec<usize> = (0..columns).filter(|&column| !is_zero[column]).collect();
+        for group in filled.chunks(TOGETHER) {
+            let mut signals = vec![[0.0; TOGETHER]; samples];
+            for (signal, row) in signals.iter_mut().zip(full.chunks_exact(columns)) {
+                for i in 0..group.len() {
+                    signal[i] = row[group[i]];
+                }
             }
-            let filtered = filter.both_ways(&one);
+            let filtered = filter.side_by_side(&signals);
             for (row, &k) in kept.iter().enumerate() {
-                kept_rows[row * columns + column] = filtered[k];
+                group.iter().zip(filtered[k]).for_each(|(column, x)| kept_rows[row * columns + column] = x);
             }
         }
         kept_rows
     };
-    let y = keep(&full, columns);
+    let y = if with_columns { keep(&arm.regressor(&q, &dq, &ddq), n * arm.base.len()) } else { Vec::new() };
     let known = keep(&arm.known(&q, &dq, &ddq), n);
+    let signs = dq.iter().enumerate().map(|(k, dq)| (dq / eps[k % n]).tanh()).collect();
+    let start = grid[0];
     let mut piece =
-        Piece { log: place, period, start: grid[0], q, dq, ddq, tau, kept, y, known, counts, eps, filter, of_rates: Vec::new() };
+        Piece { log: place, period, start, q, dq, ddq, tau, kept, y, known, counts, eps, signs, filter, of_rates: Vec::new() };
     piece.of_rates = (0..n).map(|i| OF_RATES.map(|term| piece.column(i, term, 1.0, &[]))).collect();
     piece
 }
@@ -244,12 +254,24 @@ impl Piece {
         }
     }
 
+    /// Filtered torques Y_b pi and those that are known, at the kept samples, by joint.
+    pub fn torques(&self, arm: &Arm, pi: &[f64]) -> Vec<Vec<f64>> {
+        let n = self.tau.len();
+        let full = arm.torque(&self.q, &self.dq, &self.ddq, pi);
+        let filtered = |joint: usize| {
+            let own: Vec<f64> = full.iter().skip(joint).step_by(n).copied().collect();
+            let all = self.filter.both_ways(&own);
+            self.kept.iter().zip(self.known.iter().skip(joint).step_by(n)).map(|(&k, known)| all[k] + known).collect()
+        };
+        (0..n).map(filtered).collect()
+    }
+
     fn column(&self, joint: usize, term: Friction, velocity: f64, sizes: &[f64]) -> Vec<f64> {
         let n = self.tau.len();
         let full: Vec<f64> = (0..self.tau[joint].len())
             .map(|k| {
                 let size = sizes.get(k * n + joint).map_or(0.0, |g| g.abs());
-                term.column(self.dq[k * n + joint], self.eps[joint], size, velocity)
+                term.column(self.dq[k * n + joint], self.signs[k * n + joint], size, velocity)
             })
             .collect();
         let filtered = self.filter.both_ways(&full);

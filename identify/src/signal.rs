@@ -4,12 +4,14 @@ use std::f64::consts::PI;
 
 /// The median; 0 of nothing.
 pub fn median(values: &[f64]) -> f64 {
-    let mut sorted: Vec<f64> = values.to_vec();
-    sorted.sort_by(f64::total_cmp);
-    match sorted.len() {
-        0 => 0.0,
-        n if n % 2 == 1 => sorted[n / 2],
-        n => 0.5 * (sorted[n / 2 - 1] + sorted[n / 2]),
+    let (mut values, n) = (values.to_vec(), values.len());
+    if n == 0 {
+        return 0.0;
+    }
+    let (below, &mut middle, _) = values.select_nth_unstable_by(n / 2, f64::total_cmp);
+    match below.iter().copied().max_by(f64::total_cmp).filter(|_| n % 2 == 0) {
+        Some(before) => 0.5 * (before + middle),
+        None => middle,
     }
 }
 
@@ -96,11 +98,14 @@ pub fn derivative(x: &[f64], period: f64) -> Vec<f64> {
         .collect()
 }
 
+/// Sections of a low pass.
+const SECTIONS: usize = 3;
+
 /// A Butterworth low pass of order 5, run both ways: its magnitude twice, and no phase.
 #[derive(Clone, Debug)]
 pub struct LowPass {
     /// b0, b1, b2, a1, a2 of each section.
-    sections: Vec<[f64; 5]>,
+    sections: [[f64; 5]; SECTIONS],
     /// Samples that ends are continued by.
     margin: usize,
 }
@@ -111,44 +116,69 @@ impl LowPass {
         let cutoff = cutoff.min(0.45 * rate);
         // The bilinear transform of the poles, with the cutoff where it belongs (Oppenheim and Schafer).
         let k = (PI * cutoff / rate).tan();
-        let mut sections = vec![[k / (1.0 + k), k / (1.0 + k), 0.0, (k - 1.0) / (k + 1.0), 0.0]];
-        for pair in [1.0, 2.0] {
+        let pair = |pair: f64| {
             let damping = 2.0 * (PI * pair / 5.0).cos();
             let norm = 1.0 / (1.0 + damping * k + k * k);
             let gain = k * k * norm;
-            sections.push([gain, 2.0 * gain, gain, 2.0 * (k * k - 1.0) * norm, (1.0 - damping * k + k * k) * norm]);
-        }
+            [gain, 2.0 * gain, gain, 2.0 * (k * k - 1.0) * norm, (1.0 - damping * k + k * k) * norm]
+        };
+        let single = [k / (1.0 + k), k / (1.0 + k), 0.0, (k - 1.0) / (k + 1.0), 0.0];
+        let sections = [single, pair(1.0), pair(2.0)];
         LowPass { sections, margin: (2.0 * rate / cutoff).ceil() as usize }
     }
 
     /// The filtered signal; ends are continued by their point reflection.
     pub fn both_ways(&self, x: &[f64]) -> Vec<f64> {
+        let alone: Vec<[f64; 1]> = x.iter().map(|x| [*x]).collect();
+        self.side_by_side(&alone).into_flattened()
+    }
+
+    /// Filtered signals, side by side: a sample waits for the one before it, but not for its neighbours.
+    pub fn side_by_side<const L: usize>(&self, x: &[[f64; L]]) -> Vec<[f64; L]> {
         let n = x.len();
         if n < 2 {
             return x.to_vec();
         }
         let margin = self.margin.min(n - 1);
-        let before = (1..=margin).rev().map(|k| 2.0 * x[0] - x[k]);
-        let after = (1..=margin).map(|k| 2.0 * x[n - 1] - x[n - 1 - k]);
-        let mut all: Vec<f64> = before.chain(x.iter().copied()).chain(after).collect();
-        self.run(&mut all);
-        all.reverse();
-        self.run(&mut all);
-        all.reverse();
-        all[margin..margin + n].to_vec()
+        let reflected = |end: [f64; L], k: usize| {
+            let mut at = x[k];
+            for i in 0..L {
+                at[i] = 2.0 * end[i] - at[i];
+            }
+            at
+        };
+        let before = (1..=margin).rev().map(|k| reflected(x[0], k));
+        let after = (1..=margin).map(|k| reflected(x[n - 1], n - 1 - k));
+        let mut all: Vec<[f64; L]> = Vec::with_capacity(n + 2 * margin);
+        all.extend(before.chain(x.iter().copied()).chain(after));
+        self.run(all[0], all.iter_mut());
+        self.run(all[all.len() - 1], all.iter_mut().rev());
+        all.truncate(margin + n);
+        all.drain(..margin);
+        all
     }
 
-    fn run(&self, x: &mut [f64]) {
-        for &[b0, b1, b2, a1, a2] in &self.sections {
-            // At rest at the first value: each section passes a constant as it is.
-            let first = x[0];
-            let mut s2 = (b2 - a2) * first;
-            let mut s1 = (b1 - a1) * first + s2;
-            for value in x.iter_mut() {
-                let y = b0 * *value + s1;
-                s1 = b1 * *value - a1 * y + s2;
-                s2 = b2 * *value - a2 * y;
-                *value = y;
+    fn run<'x, const L: usize>(&self, mut first: [f64; L], all: impl Iterator<Item = &'x mut [f64; L]>) {
+        let mut states = [[[0.0; L]; 2]; SECTIONS];
+        // At rest at the first value: each section passes a constant as it is.
+        for (&[b0, b1, b2, a1, a2], states) in self.sections.iter().zip(&mut states) {
+            let [s1, s2] = states;
+            for i in 0..L {
+                s2[i] = (b2 - a2) * first[i];
+                s1[i] = (b1 - a1) * first[i] + s2[i];
+                first[i] = b0 * first[i] + s1[i];
+            }
+        }
+        for value in all {
+            for (&[b0, b1, b2, a1, a2], states) in self.sections.iter().zip(&mut states) {
+                let [s1, s2] = states;
+                for i in 0..L {
+                    let x = value[i];
+                    let y = b0 * x + s1[i];
+                    s1[i] = b1 * x - a1 * y + s2[i];
+                    s2[i] = b2 * x - a2 * y;
+                    value[i] = y;
+                }
             }
         }
     }
@@ -170,6 +200,13 @@ mod tests {
             let gain = 1.0 / (1.0 + (warped(frequency) / warped(cutoff)).powi(10));
             let error = (1000..3000).map(|k| (y[k] - gain * wave(k)).abs()).fold(0.0, f64::max);
             assert!(error < 1e-9, "{frequency} Hz: {error}");
+        }
+        // Side by side, each with its own bits.
+        let signals = [0, 1, 2].map(|at| (0..50).map(|k| f64::from((k * (at + 3)) % 11)).collect::<Vec<_>>());
+        let together: Vec<[f64; 3]> = (0..50).map(|k| std::array::from_fn(|at| signals[at][k])).collect();
+        for (at, signal) in signals.iter().enumerate() {
+            let of: Vec<f64> = filter.side_by_side(&together).iter().map(|x| x[at]).collect();
+            assert_eq!(of, filter.both_ways(signal));
         }
         let constant = filter.both_ways(&[3.0; 100]);
         assert!(constant.iter().all(|y| (y - 3.0).abs() < 1e-12));

@@ -8,7 +8,7 @@ use nalgebra::DVector;
 use crate::arm::Arm;
 use crate::estimate::Estimate;
 use crate::finding::{Code, Finding, Findings};
-use crate::fit::{solve_fast, Gram};
+use crate::fit::{solve_fast, Gram, Sums};
 use crate::log::Log;
 use crate::signal::{derivative, median, period, pieces, LowPass, LONGEST_GAP};
 
@@ -264,7 +264,7 @@ fn rates(arm: &Arm, log: &Log, period: f64, findings: &mut Findings) {
 /// A fit that another order or another sign of the torques makes three times better; that is reported, and whether it was.
 pub fn torques(estimate: &Estimate<'_>, log: &str, findings: &mut Findings) -> bool {
     let n = estimate.arm.dof();
-    let (equations, _) = estimate.equations();
+    let (equations, _) = estimate.equations(None);
     let active = &estimate.active;
     let rows: Vec<usize> = (0..equations.rows.len()).filter(|&k| equations.rows[k].joint == 0).collect();
     let size: Vec<f64> = (0..n)
@@ -274,21 +274,15 @@ pub fn torques(estimate: &Estimate<'_>, log: &str, findings: &mut Findings) -> b
         })
         .collect();
     // Every row counts alike, whatever its joint: A_j' W_j b_k of all pairs of joints.
-    let mut h = vec![Gram::zero(active.len()); n];
-    let mut cross = vec![vec![DVector::zeros(active.len()); n]; n];
-    for &k in &rows {
-        for j in 0..n {
-            if !equations.rows[k + j].counts {
-                continue;
-            }
-            let row = equations.row(k + j);
-            let a = DVector::from_fn(active.len(), |i, _| row[active[i]]);
-            h[j].h.ger(1.0, &a, &a, 1.0);
-            for other in 0..n {
-                cross[j][other] += &a * equations.b[k + other];
-            }
-        }
-    }
+    let sums = Sums::new(&equations, active);
+    let ones: Vec<f64> = equations.rows.iter().map(|row| if row.counts { 1.0 } else { 0.0 }).collect();
+    let h = sums.grams(&ones, n, |k| equations.rows[k].joint);
+    let cross: Vec<Vec<DVector<f64>>> = (0..n)
+        .map(|j| {
+            let of = |other: usize| sums.times(j, sums.rows(j).iter().map(|&k| ones[k] * equations.b[k - j + other]));
+            (0..n).map(of).collect()
+        })
+        .collect();
     let cost = |order: &[usize], signs: &[f64]| {
         let mut gram = Gram::zero(active.len());
         for j in 0..n {

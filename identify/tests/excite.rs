@@ -6,9 +6,10 @@ use armgen_codegen::source::Source;
 use armgen_codegen::{validate, Model};
 use armgen_identify::arm::Arm;
 use armgen_identify::excite::options::{self, Options};
-use armgen_identify::excite::{excite, prove, Code, Course, Excitation, Fault, Kind, Limits, Motion, TOOL};
+use armgen_identify::excite::{excite, prove, Code, Course, Excitation, Fault, Kind, LeadIn, Limits, Motion, TOOL};
+use armgen_identify::log::read;
 
-use crate::arms::{Random, ELBOW};
+use crate::arms::{arm, format, Random, ELBOW};
 
 /// The elbow with all limits.
 fn limited() -> String {
@@ -86,7 +87,8 @@ fn limits_hold_at_random_times_of_motion_and_lead_in() {
         assert!((0.0..1.0).contains(&margin.margin), "{margin:?}");
     }
     assert_eq!(found.proof.margins.len(), 4 * 3 + 1);
-    assert!(found.unknowns > 10 && found.condition < 1e6, "{} {}", found.unknowns, found.condition);
+    assert!(found.unknowns > 10 && (1.0..1e6).contains(&found.condition), "{} {}", found.unknowns, found.condition);
+    assert!(found.log_det_per_parameter.is_finite());
 }
 
 /// Motion and lead-in join with q, dq and ddq; the motion repeats itself.
@@ -200,4 +202,57 @@ fn options_name_their_faults() {
     assert_eq!((read.box_[0], read.frames), (Some([0.0, 1.0]), vec!["elbow".to_owned()]));
     let found: Vec<String> = diagnostics.iter().map(|of| of.code.name().to_owned()).collect();
     assert_eq!(found, ["out-of-range", "out-of-range", "unknown-key"]);
+}
+
+/// Without noise a simulated log has the torques of the arm; noise has the size and the memory that are asked for.
+#[test]
+fn a_simulated_log_is_that_of_the_arm() {
+    let text = limited();
+    let (of, arm) = (manipulator(&text), arm(&text));
+    let wave = |by: f64| (0..3).map(|joint| vec![by, -0.5 * by + 0.1 * f64::from(joint)]).collect::<Vec<_>>();
+    let motion = Motion { w: 0.6, q0: vec![0.1, -0.4, 0.7], a: wave(0.8), b: wave(-0.3) };
+    let names = arm.joints.iter().map(|joint| joint.name.clone()).collect();
+    let lead_in = LeadIn { duration: 1.0, from: vec![0.0; 3], to: (0..3).map(|joint| motion.at(joint, 0.0)[0]).collect() };
+    let plan = Excitation { joints: names, slides: vec![false; 3], motion, lead_in, ..Excitation::default() };
+    let signals = |noise: f64, seed: u64| {
+        let text = plan.simulated(&of, 100.0, noise, seed).expect("the same joints");
+        let (log, findings) = read("log.csv", text.as_bytes(), &format(&arm));
+        assert!(!findings.has_errors(), "{}", findings.render());
+        log
+    };
+    let exact = signals(0.0, 1);
+    // With friction taken out, torques are those of the regressor, which shares nothing with inverse dynamics.
+    let samples = exact.t.len();
+    assert_eq!(samples, 1 + (100.0 * (1.0 + plan.motion.duration()) + 1e-9) as usize);
+    let state = |of: &[Vec<f64>]| (0..samples).flat_map(|k| of.iter().map(move |of| of[k])).collect::<Vec<f64>>();
+    let (q, dq) = (state(&exact.q), state(exact.dq.as_ref().expect("rates")));
+    let ddq: Vec<f64> = (0..samples)
+        .flat_map(|k| {
+            let t = k as f64 / 100.0;
+            let plan = &plan;
+            (0..3).map(move |j| if t < 1.0 { plan.lead_in.at(j, t)[2] } else { plan.motion.at(j, t - 1.0)[2] })
+        })
+        .collect();
+    let pi = &arm.combination * arm.nominal();
+    let rigid = arm.torque(&q, &dq, &ddq, pi.as_slice());
+    let gravity = arm.gravity(&q, pi.as_slice());
+    for (k, tau) in state(&exact.effort).into_iter().enumerate() {
+        let of: [f64; 6] = arm.joints[k % 3].friction.map(Option::unwrap_or_default);
+        let sign = if dq[k] == 0.0 { 0.0 } else { dq[k].signum() };
+        let friction = of[0] * dq[k] + sign * (of[1] + of[3] * gravity[k].abs()) + of[2];
+        let expected = rigid[k] + friction;
+        assert!((tau - expected).abs() < 1e-4, "{k}: {tau} and not {expected}");
+    }
+    let noisy = signals(2.0, 1);
+    for j in 0..3 {
+        let noise: Vec<f64> = noisy.effort[j].iter().zip(&exact.effort[j]).map(|(a, b)| a - b).collect();
+        let size = (noise.iter().map(|x| x * x).sum::<f64>() / exact.effort[j].iter().map(|x| x * x).sum::<f64>()).sqrt();
+        let next: f64 = noise.windows(2).map(|x| x[0] * x[1]).sum();
+        let memory = next / noise.iter().map(|x| x * x).sum::<f64>();
+        assert!((size - 0.02).abs() < 0.004 && (memory - 2.0 / 3.0).abs() < 0.1, "joint {j}: {size}, {memory}");
+        assert!(noisy.q[j].iter().all(|q| ((q / 2e-5).round() - q / 2e-5).abs() < 1e-2));
+    }
+    assert_ne!(noisy.effort, signals(2.0, 2).effort);
+    let others = manipulator(&text.replace("name: elbow, type", "name: wrist, type"));
+    assert_eq!(plan.simulated(&others, 100.0, 2.0, 1).expect_err("another joint").code, Code::UnknownJoint);
 }

@@ -46,7 +46,9 @@ export function plots(log) {
     log.names.forEach((name, i) => {
         if (i === 0) return;
         const kind = KINDS.find(([prefix]) => name.startsWith(prefix));
-        const title = kind ? kind[1] : ["x", "y", "z"].includes(name) ? "position of the end effector" : (TITLES[name] ?? name.replaceAll("_", " "));
+        // Of a log that a model was judged by: both torques of a joint, in a plot of its own.
+        const judged = /^(?:measured|predicted)_(.*)$/.exec(name);
+        const title = judged ? `${judged[1]}: torque, measured and predicted` : kind ? kind[1] : ["x", "y", "z"].includes(name) ? "position of the end effector" : (TITLES[name] ?? name.replaceAll("_", " "));
         const key = `${title}|${log.units[i]}`;
         if (!all.has(key)) all.set(key, { title, unit: log.units[i], columns: [] });
         all.get(key).columns.push(i);

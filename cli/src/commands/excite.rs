@@ -29,6 +29,19 @@ pub(crate) struct Asked {
     /// Samples a second
     #[arg(long, value_name = "HZ", default_value = "100", value_parser = positive)]
     rate: f64,
+    /// Description of a simulated arm; its log of the motion, MOTION.log.csv, comes beside the samples
+    #[arg(long, value_name = "ARM.yaml", value_hint = clap::ValueHint::FilePath, requires = "out")]
+    simulate: Option<PathBuf>,
+    /// Noise of the simulated log, per cent of the torques
+    #[arg(long, value_name = "PER_CENT", default_value = "2", value_parser = noise, requires = "simulate")]
+    noise: f64,
+}
+
+fn noise(text: &str) -> Result<f64, String> {
+    match text.parse::<f64>() {
+        Ok(x) if (0.0..=100.0).contains(&x) => Ok(x),
+        _ => Err("a number from 0 to 100 is needed".to_owned()),
+    }
 }
 
 fn positive(text: &str) -> Result<f64, String> {
@@ -53,6 +66,10 @@ fn run_or_exit_code(file: &Path, asked: &Asked) -> Result<u8, u8> {
         terminal::error(&format!("{}: nothing of this arm has mass, so no motion shows parameters", file.display()));
         FAULTY
     })?;
+    let simulated = match &asked.simulate {
+        None => None,
+        Some(path) => Some(input::manipulator(&input::description(path)?, Scalar::F64, input::Warnings::Counted)?.0),
+    };
     let planned = with_bar("planning", PARTS, |done| excite(&manipulator, &arm, &options, done));
     let found = planned.map_err(|faults| {
         faults.iter().for_each(|fault| terminal::diagnose(&format!("{}: {fault}", file.display())));
@@ -62,17 +79,32 @@ fn run_or_exit_code(file: &Path, asked: &Asked) -> Result<u8, u8> {
         terminal::error(&format!("the motion has more than {SAMPLES:e} samples: choose a lower `--rate`"));
         return Err(UNREADABLE);
     }
+    let log = match simulated.map(|of| found.simulated(&of, options.rate, asked.noise, options.seed)) {
+        None => None,
+        Some(Ok(log)) => Some(log),
+        Some(Err(fault)) => {
+            terminal::diagnose(&fault.to_string());
+            return Err(FAULTY);
+        }
+    };
     let code = terminal::print(&table(&found));
     let Some(out) = &asked.out else { return Ok(code) };
-    let paths = [out.clone(), out.with_extension("yaml"), out.with_extension("cert.json")];
-    let read = || [Some(file), asked.options.as_deref()].into_iter().flatten();
+    let texts = [
+        ("csv", Some(found.csv(options.rate))),
+        ("yaml", Some(found.yaml())),
+        ("cert.json", Some(found.certificate())),
+        ("log.csv", log),
+    ];
+    let named = |extension: &str| if extension == "csv" { out.clone() } else { out.with_extension(extension) };
+    let files: Vec<(PathBuf, String)> = texts.into_iter().filter_map(|(end, text)| Some((named(end), text?))).collect();
+    let read = || [Some(file), asked.options.as_deref(), asked.simulate.as_deref()].into_iter().flatten();
     // Before anything is written.
-    if let Some(path) = paths.iter().find(|path| read().any(|read| output::same_file(read, path))) {
+    if let Some((path, _)) = files.iter().find(|(path, _)| read().any(|read| output::same_file(read, path))) {
         terminal::error(&format!("{} is read by this command: it would be overwritten; name another `--out`", path.display()));
         return Err(UNREADABLE);
     }
-    for (path, text) in paths.iter().zip([found.csv(options.rate), found.yaml(), found.certificate()]) {
-        let wrote = output::write_other(read().map(|path| (path, "read by this command")), path, &text);
+    for (path, text) in &files {
+        let wrote = output::write_other(read().map(|path| (path, "read by this command")), path, text);
         if wrote != DONE {
             return Err(wrote);
         }

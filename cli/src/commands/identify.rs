@@ -111,6 +111,8 @@ fn run_or_exit_code(file: &Path, asked: &Asked) -> Result<u8, u8> {
         let proved = proved.as_ref().map(|(written, proofs)| (*written, proofs.as_str()));
         let html = page::html(&arm, &inputs, &found, proved, &validation, &findings);
         write_to(&folder.join("report.html"), &html)?;
+        let own = inputs.iter().map(|input| input.log.name.as_str()).zip(&found.judgements);
+        write_torques(folder, &arm, own.chain(validation.iter().map(|(name, of)| (name.as_str(), of))))?;
     }
     if let (Some(out), Some((written, certificate, proved))) = (&asked.out, &written) {
         let read = [Some(file), asked.options.as_deref()].into_iter().flatten().chain(asked.logs.iter().map(PathBuf::as_path));
@@ -260,6 +262,7 @@ fn judged(arm: &Arm, logs: Vec<Log>, asked: &Asked, findings: &Findings) -> Resu
         let of: Vec<_> = validation.iter().map(|(file, of)| report::judgement(arm, file, of)).collect();
         write_report(folder, &json!({"robot": arm.name, "validation": of, "diagnostics": report::findings(findings)}))?;
         write_to(&folder.join("report.html"), &page::of_validation(arm, &validation, findings))?;
+        write_torques(folder, arm, validation.iter().map(|(name, of)| (name.as_str(), of)))?;
     }
     Ok(code)
 }
@@ -267,6 +270,20 @@ fn judged(arm: &Arm, logs: Vec<Log>, asked: &Asked, findings: &Findings) -> Resu
 fn write_report(folder: &Path, report: &serde_json::Value) -> Result<(), u8> {
     let text = serde_json::to_string_pretty(report).expect("strings and numbers always have a JSON form") + "\n";
     write_to(&folder.join("report.json"), &text)
+}
+
+/// Measured and predicted torques of each log, for the page of the arm.
+fn write_torques<'j>(folder: &Path, arm: &Arm, all: impl Iterator<Item = (&'j str, &'j Judgement)>) -> Result<(), u8> {
+    let mut names: Vec<String> = Vec::new();
+    for (log, of) in all {
+        let stem = Path::new(log).file_stem().unwrap_or_default().to_string_lossy().into_owned();
+        // Logs of two folders may have one name.
+        let twins = names.iter().filter(|name| **name == stem).count();
+        let end = if twins == 0 { String::new() } else { format!("-{}", twins + 1) };
+        write_to(&folder.join(format!("{stem}{end}.torques.csv")), &of.csv(arm))?;
+        names.push(stem);
+    }
+    Ok(())
 }
 
 fn write_to(path: &Path, text: &str) -> Result<(), u8> {

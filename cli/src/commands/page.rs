@@ -79,8 +79,9 @@ fn names(logs: &[PathBuf]) -> Result<Vec<String>, &Path> {
 fn unit(name: &str) -> String {
     let known = [("t", "s"), ("x", "m"), ("y", "m"), ("z", "m"), ("e_x", "m"), ("e_y", "m"), ("e_z", "m"), ("angle", "rad")];
     let rest = [("speed", "m/s"), ("acceleration", "m/s²"), ("turn_rate", "rad/s"), ("turn_acceleration", "rad/s²")];
-    let starts = [("e_r", "rad"), ("q_", "rad, m"), ("eq_", "rad, m"), ("dq_", "rad/s, m/s"), ("tau_", "N m, N")];
+    let starts = [("e_r", "rad"), ("q_", "rad, m"), ("eq_", "rad, m"), ("dq_", "rad/s, m/s")];
+    let torques = ["tau_", "measured_", "predicted_"].map(|start| (start, "N m, N"));
     let exact = known.iter().chain(&rest).find(|(column, _)| *column == name);
-    let found = exact.or_else(|| starts.iter().find(|(start, _)| name.starts_with(start)));
+    let found = exact.or_else(|| starts.iter().chain(&torques).find(|(start, _)| name.starts_with(start)));
     found.map_or_else(String::new, |(_, unit)| (*unit).to_owned())
 }

@@ -3,9 +3,6 @@
 use std::fs;
 use std::path::Path;
 
-use armgen_codegen::schedule::{self, Options, Selection};
-use armgen_codegen::source::Source;
-use armgen_codegen::{validate, Model};
 use serde_json::Value;
 
 use super::{armgen, check, err, folder, out};
@@ -24,27 +21,6 @@ joints:
      motor: {ratio: 50, inertia: 1e-4}, friction: {viscous: 0.8, coulomb: 0.6}}
 ";
 
-/// The log of an arm that follows a file of samples exactly, with noise of the torques.
-fn log(arm: &str, samples: &str) -> String {
-    let (manipulator, _) = validate::read(&Source::new("arm", arm)).0.expect("a valid arm");
-    let functions = Selection::named(["inverse_dynamics"]).expect("its name");
-    let module = schedule::module(&Model::new(manipulator), &Options { functions, ..Options::default() });
-    let program = armgen_evaluate::programs::<f64>(&module).remove(0);
-    let mut text = String::from("t,q_shoulder,q_elbow,dq_shoulder,dq_elbow,tau_shoulder,tau_elbow\n");
-    let mut state: u64 = 1;
-    for line in samples.lines().skip(1) {
-        let x: Vec<f64> = line.split(',').map(|field| field.parse().expect("a number")).collect();
-        let mut tau = [0.0; 2];
-        program.run(&[&x[1..3], &x[3..5], &x[5..7]], &mut tau, &mut program.workspace()).expect("a state");
-        let noisy = tau.map(|tau| {
-            state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
-            tau + 0.1 * ((state >> 11) as f64 / (1u64 << 52) as f64 - 1.0)
-        });
-        text += &format!("{},{},{},{},{},{:.5},{:.5}\n", x[0], x[1], x[2], x[3], x[4], noisy[0], noisy[1]);
-    }
-    text
-}
-
 fn text(path: &Path) -> &str {
     path.to_str().expect("a UTF-8 path")
 }
@@ -52,10 +28,13 @@ fn text(path: &Path) -> &str {
 #[test]
 fn a_planned_motion_identifies_an_arm_and_its_numbers_are_verified() {
     let folder = folder("identify");
-    let [guess, motion, run, identified] =
-        ["robot.yaml", "motion.csv", "log.csv", "identified.yaml"].map(|name| folder.join(name));
+    let [arm, guess, motion, run, identified] =
+        ["arm.yaml", "robot.yaml", "motion.csv", "motion.log.csv", "identified.yaml"].map(|name| folder.join(name));
+    fs::write(&arm, ARM).expect("a file");
     fs::write(&guess, ARM.replace("mass: 1.5", "mass: 1").replace("viscous: 1.5", "viscous: 1")).expect("a file");
-    let planned = check(&["excite", text(&guess), "--out", text(&motion), "--duration", "20"], 0);
+    let simulate = ["--duration", "20", "--simulate", text(&arm), "--noise", "1"];
+    let planned = check(&[&["excite", text(&guess), "--out", text(&motion)][..], &simulate].concat(), 0);
+    assert!(!out(&planned).contains("NaN"), "{}", out(&planned));
     assert!(out(&planned).contains("proved for all times") && out(&planned).lines().all(|line| line.chars().count() <= 100));
     let proof: Value = serde_json::from_str(&fs::read_to_string(folder.join("motion.cert.json")).expect("a file")).expect("JSON");
     let margins = proof["motion"]["margins"].as_array().expect("a list");
@@ -64,7 +43,6 @@ fn a_planned_motion_identifies_an_arm_and_its_numbers_are_verified() {
     for key in ["robot: ", "duration: 20.0 ", "w: ", "q0:", "a:", "b:", "lead_in:", "log_det_per_parameter: ", "condition: "] {
         assert!(coefficients.lines().any(|line| line.starts_with(key)), "{key}\n{coefficients}");
     }
-    fs::write(&run, log(ARM, &fs::read_to_string(&motion).expect("samples"))).expect("a file");
     check(&["identify", text(&guess), text(&run), "--out", text(&identified)], 0);
     // Without a report the certificate is beside the file.
     let certificate = folder.join("identified.cert.json");
@@ -80,6 +58,18 @@ fn a_planned_motion_identifies_an_arm_and_its_numbers_are_verified() {
     assert_eq!((page.matches("<svg").count(), page.matches("</svg>").count()), (12, 12));
     assert!(page.contains("optimal") || page.contains("no other bodies"), "the proof is told");
     assert!(!page.contains("NaN") && !page.contains("inf"));
+    // The page of the arm draws what was measured and what the model predicts.
+    let torques = report.join("motion.log.torques.csv");
+    let columns = fs::read_to_string(&torques).expect("a file");
+    let names = "t,q_shoulder,q_elbow,dq_shoulder,dq_elbow,measured_shoulder,measured_elbow,predicted_shoulder,predicted_elbow";
+    assert_eq!(columns.lines().next(), Some(names));
+    for line in columns.lines().skip(1) {
+        let x: Vec<f64> = line.split(',').map(|x| x.parse().expect("a number")).collect();
+        assert!(x.len() == 9 && (x[5] - x[7]).abs() < 3.0 && (x[6] - x[8]).abs() < 1.5, "{line}");
+    }
+    let drawn = folder.join("two.html");
+    check(&["page", text(&identified), "--out", text(&drawn), "--log", text(&torques)], 0);
+    assert!(fs::read_to_string(&drawn).expect("a page").contains("data-log=\"motion.log.torques\""));
     // A digit of the file, or of the certificate.
     let written = fs::read_to_string(&identified).expect("a file");
     let at = written.find("viscous: ").expect("a number") + 9;

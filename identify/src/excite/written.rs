@@ -21,20 +21,28 @@ fn margin(of: &Excitation, margin: &Margin) -> Value {
 }
 
 impl Excitation {
-    /// `motion.csv`: t, then q, dq and ddq of each joint, lead-in and motion, `rate` samples a second.
-    pub fn csv(&self, rate: f64) -> String {
-        let mut text = String::from("t");
-        for prefix in ["q", "dq", "ddq"] {
-            self.joints.iter().for_each(|joint| text += &format!(",{prefix}_{joint}"));
-        }
-        text.push('\n');
+    /// The first line of a file of samples.
+    pub(super) fn names(&self, prefixes: [&str; 3]) -> String {
+        let columns = prefixes.iter().flat_map(|prefix| self.joints.iter().map(move |joint| format!(",{prefix}_{joint}")));
+        format!("t{}\n", columns.collect::<String>())
+    }
+
+    /// Stamps of lead-in and motion, with q and its derivatives by joint; `rate` samples a second.
+    pub(super) fn samples(&self, rate: f64) -> Vec<(f64, Vec<[f64; 4]>)> {
         let (lead, whole) = (self.lead_in.duration, self.lead_in.duration + self.motion.duration());
         let samples = (whole * rate * (1.0 + 1e-12)).floor() as usize;
-        for k in 0..=samples {
+        let at = |joint: usize, t: f64| if t < lead { self.lead_in.at(joint, t) } else { self.motion.at(joint, t - lead) };
+        let sample = |k: usize| {
             let t = k as f64 / rate;
-            let x: Vec<[f64; 4]> = (0..self.joints.len())
-                .map(|joint| if t < lead { self.lead_in.at(joint, t) } else { self.motion.at(joint, t - lead) })
-                .collect();
+            (t, (0..self.joints.len()).map(|joint| at(joint, t)).collect())
+        };
+        (0..=samples).map(sample).collect()
+    }
+
+    /// `motion.csv`: t, then q, dq and ddq of each joint, lead-in and motion, `rate` samples a second.
+    pub fn csv(&self, rate: f64) -> String {
+        let mut text = self.names(["q", "dq", "ddq"]);
+        for (t, x) in self.samples(rate) {
             let _ = write!(text, "{t:.6}");
             for d in 0..3 {
                 // A zero without a sign.

@@ -18,6 +18,15 @@ test("columns of one kind and unit share a plot", () => {
     ]);
 });
 
+test("both torques of a judged joint share a plot", () => {
+    const names = ["t", "measured_a", "measured_b", "predicted_a", "predicted_b"];
+    const of = plots({ names, units: ["s", "N m", "N", "N m", "N"], columns: [] }).map((plot) => [plot.title, plot.unit, plot.columns]);
+    assert.deepEqual(of, [
+        ["a: torque, measured and predicted", "N m", [1, 3]],
+        ["b: torque, measured and predicted", "N", [2, 4]],
+    ]);
+});
+
 test("the sample of a time is the last one before it", () => {
     const times = [0, 0.5, 1, 4];
     assert.deepEqual([-1, 0, 0.6, 1, 3.9, 4, 9].map((t) => sampleAt(times, t)), [0, 0, 1, 2, 2, 3, 3]);
