@@ -12,6 +12,8 @@ pub(crate) mod import;
 pub(crate) mod manual;
 pub(crate) mod package;
 pub(crate) mod page;
+#[cfg(feature = "run")]
+pub(crate) mod run;
 pub(crate) mod schema;
 pub(crate) mod show;
 pub(crate) mod time;

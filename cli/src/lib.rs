@@ -393,7 +393,30 @@ Exit codes: 0 done, 1 the description is faulty, 2 a file cannot be read or writ
 Editors use it for completion, explanations and a first check (docs/editors.md). It accepts every
 file that armgen accepts; `armgen check` also judges names, signs and sums.")]
     Schema,
+    /// Run experiments on an arm, draw them, compare them with their expectations
+    #[cfg(feature = "run")]
+    #[command(after_help = "Examples:
+  armgen run --robot arm.yaml                              everything in experiments/, into out/
+  armgen run --robot arm.yaml my_experiments/*.yaml --out results
+
+The table goes to standard output; DIR receives figures (SVG), logs (CSV) and a page with
+them all, index.html. The format: docs/experiments.md.
+An experiment for another robot is skipped; if none is left, the arm moves along a demonstration.
+Exit codes: 0 all as expected, 1 a result is outside its expectation or a file is faulty,
+2 a file cannot be opened.")]
+    Run {
+        /// Description of the arm, robot.yaml: 1 to 8 joints, with six task rows or one for each joint
+        #[arg(long, value_name = "ROBOT", value_hint = ValueHint::FilePath)]
+        robot: PathBuf,
+        /// Experiments; all of `experiments/` if no file is named
+        #[arg(value_name = "FILE", value_hint = ValueHint::FilePath)]
+        files: Vec<PathBuf>,
+        /// Folder for figures (SVG), logs (CSV) and the page
+        #[arg(long, value_name = "DIR", default_value = "out", value_hint = ValueHint::DirPath)]
+        out: PathBuf,
+    },
     /// Robots move in the lab: `cargo run --release -- run` in the folder of armgen
+    #[cfg(not(feature = "run"))]
     #[command(hide = true)]
     Run {
         #[arg(hide = true, trailing_var_arg = true, allow_hyphen_values = true)]
@@ -559,9 +582,12 @@ fn run(command: Command) -> u8 {
         Command::Time { file, path, asked } => commands::time::run(&file, path.as_deref(), &asked),
         Command::Count { file, format, functions, without, fma } => commands::count::run(&file, format, &functions, without, fma),
         Command::Page { file, out, logs } => commands::page::run(&file, out, &logs),
+        #[cfg(feature = "run")]
+        Command::Run { robot, files, out } => commands::run::run(&robot, &files, &out),
+        #[cfg(not(feature = "run"))]
         Command::Run { arguments: _ } => {
             terminal::error(
-                "no robot is compiled into armgen; in the folder of its sources, `cargo run --release -- run` builds the robot of robot.yaml and moves it",
+                "this armgen was built without experiments; in the folder of its sources, `cargo install --path cli --features run` builds one with `armgen run --robot FILE`, and `cargo run --release -- run` builds the robot of robot.yaml and moves it",
             );
             UNREADABLE
         }

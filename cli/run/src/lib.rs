@@ -2,6 +2,8 @@
 //!
 //! The order: read all files; linearise every sampled loop and report unstable loops; then run, draw, and compare with expectations.
 
+#[cfg(feature = "any-arm")]
+mod any_arm;
 mod page;
 
 use std::cell::RefCell;
@@ -22,13 +24,16 @@ use armgen_terminal::output::place;
 use armgen_terminal::table::{Align, Table};
 use armgen_terminal::{self as terminal, input, DONE, FAULTY, UNREADABLE};
 
+#[cfg(feature = "any-arm")]
+pub use any_arm::any_arm;
+
 /// Runs the experiments for this robot, or a demonstration if there are no experiments.
 pub fn run(files: &[PathBuf], out: &Path, arm: &dyn Arm, description: &Source) -> u8 {
     let Files { experiments, others, paths, read, code } = read_all(&named(files), arm.robot());
     let built = &arm.robot().name;
     for (robot, count) in &others {
         let what = input::counted(*count, "experiment");
-        terminal::note(&format!("{what} skipped: for the robot `{robot}`, and this program was built with `{built}`"));
+        terminal::note(&format!("{what} skipped: for the robot `{robot}`, and the arm here is `{built}`"));
     }
     match paths.as_slice() {
         [] => {}
@@ -304,7 +309,7 @@ fn demonstrate(arm: &dyn Arm, out: &Path, description: &Source) -> u8 {
             return FAULTY;
         }
     };
-    let title = format!("{}: a demonstration of the arm that this program was built with", robot.name);
+    let title = format!("{}: a demonstration of the arm", robot.name);
     let title = terminal::bold(&title, &std::io::stdout());
     let summary: String = demonstration.summary.iter().map(|line| format!("  {line}\n")).collect();
     let joints = input::counted(robot.dof(), "joint");

@@ -59,7 +59,7 @@ impl<R: Functions<N, P>, W, const N: usize, const M: usize, const P: usize> Inst
         let duration = run.sampling.duration.as_secs_f64();
         let path = |s: f64| run.sampling.motion.trajectory.sample(Duration::from_secs_f64(s * duration)).pose;
         let mut way = Vec::new();
-        let followed = (solver.follow)(&path, &start, &mut |s, q| way.push((s, *q, self.manipulability(q))));
+        let followed = (solver.follow)(&self.nominal, &path, &start, &mut |s, q| way.push((s, *q, self.manipulability(q))));
         let joint = |joint: usize| &self.robot.joints[joint].name;
         let ended = followed.end.map(|end| {
             // Other reasons mean that the branch did not begin or that following failed.
@@ -72,7 +72,7 @@ impl<R: Functions<N, P>, W, const N: usize, const M: usize, const P: usize> Inst
             let why = format!("the branch ends at {:.6} s of {duration} s: {why}", followed.s * duration);
             Ended { why, told_by: is_end.then_some(Quantity::BranchEndsAt) }
         });
-        let postures = (solver.postures)(&path(0.0)).len();
+        let postures = (solver.postures)(&self.nominal, &path(0.0)).len();
         Ok(Box::new(Branch { body, robot: &self.robot, way, duration, postures, reached: followed.s, ended }))
     }
 }

@@ -18,7 +18,7 @@ use armgen_runtime::stability::{
     StablePeriod,
 };
 
-use super::instance::{sized, Functions};
+use super::instance::{padded, sized, Functions};
 use super::{Instance, Run};
 use crate::model::{
     number, Body, ControlLaw, ControlLawKind, ControlRun, Ended, EstimateBounds, Experiment, JointQuantity, Peak, Quantity,
@@ -178,7 +178,7 @@ where
             true => Drive::Continuous(adaptive(&run.law, period).map_err(refused)?),
             false => Drive::Sampled(self.sampled_law(&run.law, period).map_err(refused)?),
         };
-        let plant = (self.with_parameters)(sized(&run.plant));
+        let plant = (self.with_parameters)(&self.nominal, padded(&run.plant, 0.0));
         let no_answer = |error: StabilityError| format!("the loop cannot be linearised: {error}");
         let at_rest: &dyn LineariseAtRest<W, R, N> = match &drive {
             Drive::Sampled(law) => law.as_linearised_at_rest(),
@@ -340,12 +340,12 @@ fn limits<const N: usize>(law: &ControlLaw) -> Result<Option<TorqueLimits<f64, N
 fn adaptive<const N: usize, const P: usize>(law: &ControlLaw, period: f64) -> Result<Adaptive<f64, N, P>, SettingError> {
     let [lambda, k_d] = ["lambda", "k_d"].map(|key| sized(law.gain(key)));
     let adaptation = &law.adaptation;
-    let mut controller = Adaptive::new(lambda, k_d, sized(law.gain("k_pi")), sized(&adaptation.estimate), period)?;
+    let mut controller = Adaptive::new(lambda, k_d, padded(law.gain("k_pi"), 1.0), padded(&adaptation.estimate, 0.0), period)?;
     if let Some(limits) = limits(law)? {
         controller = controller.with_torque_limits(limits);
     }
     if let Some(EstimateBounds { lowest, highest }) = &adaptation.bounds {
-        controller = controller.with_projection(Interval::new(sized(lowest), sized(highest))?);
+        controller = controller.with_projection(Interval::new(padded(lowest, 0.0), padded(highest, 0.0))?);
     }
     Ok(if adaptation.is_on { controller } else { controller.with_frozen([true; P]) })
 }
@@ -558,7 +558,7 @@ where
     }
 
     fn sampled(&mut self, run: &ControlRun, law: Box<dyn SampledLaw<R, W, N, P> + '_>) -> Result<(), RunError<Stop>> {
-        let plant = (self.arm.with_parameters)(sized(&run.plant));
+        let plant = (self.arm.with_parameters)(&self.arm.nominal, padded(&run.plant, 0.0));
         let mut options = RunOptions::new(run.sampling.period, run.sampling.duration);
         options.integrator = Integrator::RungeKutta4 { substeps: run.substeps };
         options.sensor = Sensor::new(run.delay, run.noise.position, run.noise.rate, u64::from(run.noise.seed));
@@ -578,7 +578,7 @@ where
     }
 
     fn continuous(&mut self, run: &ControlRun, controller: &Adaptive<f64, N, P>) -> Result<(), RunError<Stop>> {
-        let plant = (self.arm.with_parameters)(sized(&run.plant));
+        let plant = (self.arm.with_parameters)(&self.arm.nominal, padded(&run.plant, 0.0));
         let options = ContinuousOptions { period: run.sampling.period, duration: run.sampling.duration, substeps: run.substeps };
         let (model, joints) = (&self.arm.nominal, self.joints);
         let law = |k: u64, t: f64, state: &State<f64, N>, estimate: &SVector<f64, P>| {

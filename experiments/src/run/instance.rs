@@ -12,9 +12,9 @@ use crate::model::{Body, Experiment, Robot};
 pub struct Instance<R, W, const N: usize, const M: usize, const P: usize> {
     pub(super) robot: Robot,
     pub(super) nominal: R,
-    pub(super) with_parameters: fn([f64; P]) -> W,
+    pub(super) with_parameters: fn(&R, [f64; P]) -> W,
     pub(super) task: Task<M>,
-    pub(super) solver: Option<Solver<N>>,
+    pub(super) solver: Option<Solver<R, N>>,
 }
 
 /// The functions that runs need, which every emitted module in f64 implements.
@@ -27,12 +27,17 @@ pub(super) fn sized<const K: usize>(values: &[f64]) -> [f64; K] {
     std::array::from_fn(|i| values.get(i).copied().unwrap_or(f64::NAN))
 }
 
+/// Parameters of a file, as [`sized`]. A robot that is executed has places beyond its parameters, where `rest` has no effect.
+pub(super) fn padded<const K: usize>(values: &[f64], rest: f64) -> [f64; K] {
+    std::array::from_fn(|i| values.get(i).copied().unwrap_or(rest))
+}
+
 impl<R, W, const N: usize, const M: usize, const P: usize> Instance<R, W, N, M, P> {
     /// The robot `nominal` with its data `robot` and the indices `task` of its task rows.
     ///
     /// # Panics
     /// If `task` is empty, repeats a row or contains an index above 5; no emitted robot has such a task.
-    pub fn new(robot: Robot, task: [usize; M], nominal: R, with_parameters: fn([f64; P]) -> W) -> Self {
+    pub fn new(robot: Robot, task: [usize; M], nominal: R, with_parameters: fn(&R, [f64; P]) -> W) -> Self {
         let task = Task::from_indices(task).expect("the description has been checked: no row stands twice");
         let robot = Robot { task: task.rows().to_vec(), ..robot };
         Instance { robot, nominal, with_parameters, task, solver: None }
@@ -40,7 +45,7 @@ impl<R, W, const N: usize, const M: usize, const P: usize> Instance<R, W, N, M, 
 
     /// The same with inverse kinematics, if the robot has it.
     #[must_use]
-    pub fn solved_by(self, solver: Option<Solver<N>>) -> Self {
+    pub fn solved_by(self, solver: Option<Solver<R, N>>) -> Self {
         Instance { solver, ..self }
     }
 
@@ -108,7 +113,7 @@ macro_rules! instance {
             robot,
             emitted::TASK,
             emitted::Nominal,
-            |parameters| {
+            |_, parameters| {
                 // The nominal gravity, where a robot has one of its own.
                 #[allow(clippy::needless_update)]
                 let robot = emitted::WithParameters { parameters, ..Default::default() };

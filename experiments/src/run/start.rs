@@ -47,7 +47,7 @@ impl<R: Functions<N, P>, W, const N: usize, const M: usize, const P: usize> Inst
             within.min_by(|a, b| a.norm().total_cmp(&b.norm()))
         };
         let solver = self.solver.filter(|_| near.is_none());
-        if let Some(found) = solver.and_then(|solver| nearest_to_zero((solver.postures)(&begin))) {
+        if let Some(found) = solver.and_then(|solver| nearest_to_zero((solver.postures)(&self.nominal, &begin))) {
             return Ok(found);
         }
         let damping = Damping::below(DAMPING.0).at_most(DAMPING.1).map_err(|error| refused(&error))?;
