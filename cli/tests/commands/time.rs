@@ -365,6 +365,8 @@ fn a_timing_is_proved_again() {
     // Four joints.
     let scara = fs::read_to_string(file("robots/scara.yaml")).expect("a description");
     verified("scara", &scara, SCARA_PATH);
+    // Nodes at which no pair of rows excludes all larger speeds, but one pair after the other does.
+    verified("crane", CRANE, "points: [[0, 0], [1, 1], [2, 0]]\nlimits: {acceleration: [8, 4]}\n");
     let (name, robot, _) = &arms()[0];
     let mut cut = verified(name, robot, "points: [[0], [2]]\n");
     cut["grid"]["k"].as_array_mut().expect("a list").pop();
@@ -402,6 +404,102 @@ fn changed_digits_of_a_timing_are_refused() {
         changed("/path/coefficients/0/0/1", 1e-3);
     }
     assert!(count > 150, "{count}");
+}
+
+/// The places of all numbers of a document.
+fn places(of: &Value, at: &str, found: &mut Vec<String>) {
+    match of {
+        Value::Number(_) => found.push(at.to_owned()),
+        Value::Array(all) => all.iter().enumerate().for_each(|(k, of)| places(of, &format!("{at}/{k}"), found)),
+        Value::Object(all) => all.iter().for_each(|(key, of)| places(of, &format!("{at}/{key}"), found)),
+        _ => {}
+    }
+}
+
+/// The largest share of a limit of a timing of one joint, at 28 places of each segment; `torque` takes q, dq, ddq and the
+/// direction of the path.
+fn largest_share(timing: &Value, torque: &dyn Fn(f64, f64, f64, f64) -> f64) -> f64 {
+    let of = |key: &str| numbers(&timing["grid"][key]);
+    let (s, x, k) = (of("s"), of("x"), of("k"));
+    let knots = numbers(&timing["path"]["knots"]);
+    let limit = |key: &str| timing["limits"][key][0].as_f64().unwrap_or(f64::INFINITY);
+    let effort = &timing["limits"]["effort"][0];
+    let mut most = 0.0f64;
+    for i in 0..k.len() {
+        let h = s[i + 1] - s[i];
+        let middle = 0.5 * (x[i] + x[i + 1]) + k[i];
+        for place in 0..28 {
+            let (b, at) = (f64::from(place) / 27.0, s[i] + h * f64::from(place) / 27.0);
+            let a = 1.0 - b;
+            let x_here = x[i] * a * a + 2.0 * middle * a * b + x[i + 1] * b * b;
+            let u = ((middle - x[i]) * a + (x[i + 1] - middle) * b) / h;
+            let piece = knots.iter().rposition(|knot| *knot <= at).unwrap_or(0).min(knots.len() - 2);
+            let powers = numbers(&timing["path"]["coefficients"][piece][0]);
+            let t = at - knots[piece];
+            let sum = |order: usize| -> f64 {
+                let factor = |k: usize| (0..order).map(|i| (k - i) as f64).product::<f64>();
+                (order..powers.len()).map(|k| factor(k) * powers[k] * t.powi((k - order) as i32)).sum()
+            };
+            let v = x_here.max(0.0).sqrt();
+            let (dq, ddq) = (sum(1) * v, sum(1) * u + sum(2) * x_here);
+            let tau = torque(sum(0), dq, ddq, sum(1).signum());
+            let [low, high] = [0, 1].map(|k| effort[k].as_f64().unwrap_or(f64::INFINITY));
+            most = most
+                .max(dq.abs() / limit("velocity"))
+                .max(ddq.abs() / limit("acceleration"))
+                .max(tau / if tau < 0.0 { low } else { high });
+        }
+    }
+    most
+}
+
+/// A thousand random changes of a number: a change that is accepted has a motion within its limits between all nodes, and no bound above the
+/// optimum.
+#[test]
+#[ignore = "wide"]
+fn no_change_is_accepted_that_samples_refute() {
+    let mut state = 1u64;
+    let mut random = || {
+        state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        (state >> 11) as f64 / (1u64 << 53) as f64
+    };
+    let slide = |_: f64, dq: f64, ddq: f64, direction: f64| 2.0 * ddq + 1.5 * dq + 2.0 * direction;
+    let pendulum = |q: f64, _: f64, ddq: f64, _: f64| ddq + 9.81 * q.sin();
+    let (mut accepted, mut changes) = (0, 0);
+    for (name, robot, path) in arms() {
+        let timing = verified(name, &robot, path);
+        let given = armgen_codegen::source::Source::new("robot", &robot);
+        let (manipulator, _) = armgen_codegen::validate::read(&given).0.expect("a valid arm");
+        let torque: &dyn Fn(f64, f64, f64, f64) -> f64 = if name == "slide" { &slide } else { &pendulum };
+        assert!(largest_share(&timing, torque) <= 1.0 + 1e-9, "{name}");
+        let mut all = Vec::new();
+        places(&timing, "", &mut all);
+        for _ in 0..334 {
+            let mut changed = timing.clone();
+            let place = &all[(random() * all.len() as f64) as usize];
+            let value = changed.pointer_mut(place).expect("a number");
+            let old = number(value);
+            let new = match (random() * 4.0) as u8 {
+                0 => old * (1.0 + (2.0 * random() - 1.0) * 10f64.powf(-9.0 * random())),
+                1 => old + (2.0 * random() - 1.0) * 10f64.powf(-9.0 * random()),
+                2 => -old,
+                _ => 0.0,
+            };
+            *value = new.into();
+            changes += usize::from(new != old);
+            if armgen_verify::timing::check(&manipulator, &changed.to_string()).is_ok() {
+                accepted += usize::from(new != old);
+                let share = largest_share(&changed, torque);
+                assert!(share <= 1.0 + 1e-9, "{name}: {place} from {old} to {new} is accepted, {share}");
+                // Other limits, another path and other speeds at the ends have another optimum.
+                let is_claim = ["/limits", "/path", "/ends"].iter().all(|start| !place.starts_with(start));
+                let bound = number(&changed["lower_bound"]);
+                assert!(!is_claim || bound <= number(&timing["duration"]), "{name}: {place} from {old} to {new}: {bound}");
+            }
+        }
+    }
+    println!("{accepted} of {changes} changes are accepted");
+    assert!(changes > 900 && accepted < changes / 2, "{accepted} of {changes}");
 }
 
 /// The path of the tutorial has the report that the page prints.
