@@ -254,6 +254,12 @@ fn faults() -> Vec<(&'static str, String, String, Vec<&'static str>, Vec<&'stati
         ("too-coarse", of(PENDULUM, "points: [[0], [20]]\n"), "--segments=5", vec!["try `--segments "]),
         ("start-not-held", of(PENDULUM, "points: [[pi/2], [0]]\nlimits: {effort: [8]}\n"), "", vec!["needs 9.81 N m"]),
         ("gap", of(PENDULUM, "points: [[0], [2]]\n"), "--segments=20 --gap=1e-9", vec![" segments leave a gap of"]),
+        (
+            "slow-point",
+            of(CRANE, "points: [[0, 0], [1, 1], [2, 0]]\ncurve: lines\nblend: 1e-6\nlimits: {acceleration: [5, 5]}\n"),
+            "--segments=3000",
+            vec!["the corner of point 2: the motion slows down to"],
+        ),
         ("other-robot", of(SLIDE, "robot: panda\npoints: [[0], [1]]\n"), "", vec!["`panda`", "path.yaml:1:8"]),
         // Of a description.
         (
@@ -282,7 +288,7 @@ fn faults() -> Vec<(&'static str, String, String, Vec<&'static str>, Vec<&'stati
 #[test]
 fn every_fault_has_its_code_and_its_place() {
     for (code, robot, path, options, texts) in faults() {
-        let is_warning = ["start-not-held", "gap", "other-robot"].contains(&code);
+        let is_warning = ["start-not-held", "gap", "slow-point", "other-robot"].contains(&code);
         let (_, error, _) = timed(code, &robot, &path, &options, i32::from(!is_warning));
         assert!(error.contains(code), "{code}: {error}");
         for text in texts {
@@ -604,6 +610,16 @@ fn torques_of_a_trajectory_are_those_of_the_arm() {
     checked("held", PENDULUM, Some("limits: {effort: [8.26]}\n"), &text, 0);
     let (_, error) = checked("falls", PENDULUM, Some("limits: {effort: [[-8.25, 8.25]]}\n"), &text, 1);
     assert!(error.contains("the torque of joint `pivot` is 8.25"), "{error}");
+    // At an even rate from 0.3 to 2.5 rad: 9.81 N m at pi/2, at most 9.757 in nine places.
+    let text = csv("t,q1,dq1,ddq1", [0.0, 1.0].map(|t| vec![t, 0.3 + 2.2 * t, 2.2, 0.0]));
+    let (_, error) = checked("between", PENDULUM, Some("limits: {effort: [9.809]}\n"), &text, 1);
+    assert!(error.contains("the torque of joint `pivot` is 9.81 N m") && error.contains("at t = 0.57763"), "{error}");
+    // A slide that turns round at 0.37 s: 2 kg, -8 m/s², 2 N of friction before and after.
+    let text = csv("t,q1,dq1,ddq1", [0.0, 0.5].map(|t: f64| vec![t, 2.96 * t - 4.0 * t * t, 2.96 - 8.0 * t, -8.0]));
+    let robot = SLIDE.replace("viscous: 1.5", "viscous: 0");
+    let (_, error) = checked("turns", &robot, Some("limits: {effort: [17.9]}\n"), &text, 1);
+    assert!(error.contains("the torque of joint `slide` is -18 N"), "{error}");
+    checked("turned", &robot, Some("limits: {effort: [18.1]}\n"), &text, 0);
 }
 
 /// What `--csv` writes keeps the limits at its samples, and between them within what the samples leave open.
