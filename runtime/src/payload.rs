@@ -15,8 +15,8 @@
 //! Y_f = lambda (P - F[P]) + F[G],     y_f = F[tau - F - g_0 + C_0' dq] - lambda (p_0 - F[p_0]),     Y_f pi = y_f
 //! ```
 //!
-//! The filter runs by the backward rule, tau held over the past period, the rest as the mean of its ends. Each row, divided by the spread of its joint, is
-//! rotated into [R z] by Givens (Bierman, Factorization Methods for Discrete Sequential Estimation, 1977): R pi = z is the estimate.
+//! The filter runs by the backward rule, tau held over the past period, the rest as the mean of its ends. The rows, each divided by the spread of its joint, are
+//! reflected into [R z] (Householder; Bierman, Factorization Methods for Discrete Sequential Estimation, 1977): R pi = z is the estimate.
 
 use crate::{
     control::ControlError,
@@ -207,38 +207,47 @@ impl<T: RealField + Copy, const N: usize> PayloadEstimator<T, N> {
             let regressor = payload_regressor(model, measured, &of.gravity);
             Before { regressor, momentum: model.momentum(q, dq), force: bare + model.coriolis_transpose_times(q, dq) }
         };
-        let before = self.before.unwrap_or(now);
+        let first = now;
+        let before = self.before.as_ref().unwrap_or(&first);
         let (lambda, step) = (of.filter, of.filter * of.period);
         let by = T::one() / (T::one() + step);
         let half = lit::<T>(0.5);
-        let regressor = (self.regressor
-            + (now.regressor.momentum - before.regressor.momentum) * lambda
-            + (now.regressor.force + before.regressor.force) * (half * step))
-            * by;
+        // Entry by entry: sums of whole matrices cost a microcontroller twice the instructions.
+        let mut regressor = SMatrix::zeros();
+        let mut are_finite = true;
+        for k in 0..PARAMETERS {
+            for i in 0..N {
+                let slope = now.regressor.momentum[(i, k)] - before.regressor.momentum[(i, k)];
+                let force = now.regressor.force[(i, k)] + before.regressor.force[(i, k)];
+                let x = (self.regressor[(i, k)] + slope * lambda + force * (half * step)) * by;
+                are_finite &= x.is_finite();
+                regressor[(i, k)] = x;
+            }
+        }
         let torque =
             (self.torque + (*tau + (now.force + before.force) * half) * step - (now.momentum - before.momentum) * lambda) * by;
-        if !(torque.iter().all(|x| x.is_finite()) && regressor.iter().all(|x| x.is_finite())) {
+        if !(are_finite && is_finite(&torque)) {
             return Err(ControlError::StateNotFinite);
         }
-        let is_first = self.before.is_none();
-        self.before = Some(now);
-        if is_first {
+        if self.before.replace(now).is_none() {
             return Ok(());
         }
         (self.regressor, self.torque) = (regressor, torque);
-        for (row, z) in self.root.iter_mut().zip(&mut self.z) {
-            row.iter_mut().for_each(|x| *x *= self.kept);
-            *z *= self.kept;
+        for k in 0..PARAMETERS {
+            (k..PARAMETERS).for_each(|j| self.root[k][j] *= self.kept);
+            self.z[k] *= self.kept;
         }
         // Errors behind the filter are correlated over 1/lambda: so much less each of them tells.
         let told = (step / (lit::<T>(2.0) + step)).sqrt();
+        let (mut rows, mut right) = ([[T::zero(); PARAMETERS]; N], [T::zero(); N]);
         for i in 0..N {
             if dq[i].abs() >= self.settings.least_rate {
                 let weight = told / self.settings.spread[i];
-                let row = core::array::from_fn(|k| regressor[(i, k)] * weight);
-                rotate(&mut self.root, &mut self.z, row, torque[i] * weight);
+                (0..PARAMETERS).for_each(|k| rows[i][k] = regressor[(i, k)] * weight);
+                right[i] = torque[i] * weight;
             }
         }
+        reflect(&mut self.root, &mut self.z, rows, right);
         Ok(())
     }
 
@@ -329,27 +338,44 @@ impl<T: RealField + Copy, const N: usize> PayloadEstimator<T, N> {
     }
 }
 
-/// Rotates a row into [R z].
-fn rotate<T: RealField + Copy>(
+/// Reflects rows into [R z] (Householder). Two reflections leave nothing below: this one keeps R's diagonal positive, and its first entry is a
+/// quotient, not a difference.
+fn reflect<T: RealField + Copy, const N: usize>(
     root: &mut [[T; PARAMETERS]; PARAMETERS],
     z: &mut [T; PARAMETERS],
-    mut row: [T; PARAMETERS],
-    mut right: T,
+    mut rows: [[T; PARAMETERS]; N],
+    mut right: [T; N],
 ) {
     for k in 0..PARAMETERS {
-        let size = (root[k][k] * root[k][k] + row[k] * row[k]).sqrt();
-        if size <= T::zero() {
+        let column: [T; N] = core::array::from_fn(|i| rows[i][k]);
+        let square = column.iter().fold(T::zero(), |sum, x| sum + *x * *x);
+        if square <= T::zero() {
             continue;
         }
-        let (cosine, sine) = (root[k][k] / size, row[k] / size);
-        for j in k..PARAMETERS {
-            let (above, below) = (root[k][j], row[j]);
-            root[k][j] = cosine * above + sine * below;
-            row[j] = cosine * below - sine * above;
+        let size = (root[k][k] * root[k][k] + square).sqrt();
+        let first = -square / (root[k][k] + size);
+        let by = lit::<T>(2.0) / (first * first + square);
+        root[k][k] = size;
+        for j in k + 1..PARAMETERS {
+            let mut along = first * root[k][j];
+            for i in 0..N {
+                along += column[i] * rows[i][j];
+            }
+            along *= by;
+            root[k][j] -= along * first;
+            for i in 0..N {
+                rows[i][j] -= along * column[i];
+            }
         }
-        let above = z[k];
-        z[k] = cosine * above + sine * right;
-        right = cosine * right - sine * above;
+        let mut along = first * z[k];
+        for i in 0..N {
+            along += column[i] * right[i];
+        }
+        along *= by;
+        z[k] -= along * first;
+        for i in 0..N {
+            right[i] -= along * column[i];
+        }
     }
 }
 

@@ -167,3 +167,45 @@ fn a_reaction_floats_or_holds() {
     let mut stop = Reaction::Stop(PdGravity::new([50.0; 6], [5.0; 6]).unwrap());
     assert!((stop.torque(&arm, &q, &moved).unwrap().tau - own - SVector::repeat(-5.0)).amax() < 1e-12);
 }
+
+/// Fast and free, an arm of the model shows no more than the error of the sampled integral.
+#[test]
+fn a_fast_motion_leaves_no_residual() {
+    let arm = ur5().without_friction();
+    let mut observer = MomentumObserver::new([100.0; 6], PERIOD, threshold([1.0; 6]), 3).unwrap();
+    let (mut worst, mut largest) = (0.0f64, 0.0f64);
+    follow(
+        (&arm, &arm),
+        &mut observer,
+        2000,
+        |_, _| SVector::zeros(),
+        |k, contact| {
+            worst = worst.max(contact.residual.amax());
+            let (s, c) = (1.3 * k as f64 * PERIOD).sin_cos();
+            let by = vector![0.4, 0.3, -0.3, 0.4, 0.5, 0.6];
+            let (q, dq) = (SVector::from(START) + by * (1.0 - c), by * (1.3 * s));
+            largest = largest.max(arm.coriolis_transpose_times(&q, &dq).amax());
+        },
+    );
+    println!("residual {worst:.2e} N m, C' dq up to {largest:.2e} N m");
+    assert!(worst < 0.2 * largest, "{worst} of {largest}");
+}
+
+/// Single samples beyond the threshold are no contact, however many there are.
+#[test]
+fn excursions_of_a_sample_do_not_add_up() {
+    let arm = ur5().without_friction();
+    let q = SVector::from(START);
+    // The residual falls to 1/1.9 in a sample.
+    let mut observer = MomentumObserver::new([900.0; 6], PERIOD, threshold([0.5; 6]), 3).unwrap();
+    let gravity = arm.gravity(&q);
+    let mut beyond = 0;
+    for k in 0..200 {
+        let push = if k % 10 == 5 { 5.0 } else { 0.0 };
+        let tau = gravity - SVector::repeat(push);
+        let contact = observer.step(&arm, &State::at_rest(q), &tau, &SVector::zeros()).unwrap();
+        beyond += usize::from(contact.first.is_some());
+        assert!(!contact.is_contact, "{k}");
+    }
+    assert_eq!(beyond, 20);
+}

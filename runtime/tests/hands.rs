@@ -561,3 +561,14 @@ fn a_hold_slips_at_its_force() {
     let before = law;
     assert!(law.torque(&arm, &lost).is_err() && law == before);
 }
+
+/// Beyond its rate, and only there, a cap brakes a joint by its damper.
+#[test]
+fn a_cap_brakes_beyond_its_rate() {
+    let arm = ur5();
+    let mut free = HandGuiding::new([0.5; 6]).unwrap();
+    let mut capped = free.with_speed_cap([1.0; 6], [20.0; 6]).unwrap();
+    let state = State { q: SVector::from(UR5), dq: vector![1.2, -1.5, 0.9, -1.0, 3.0, 0.0] };
+    let by = capped.torque(&arm, &state).unwrap().tau - free.torque(&arm, &state).unwrap().tau;
+    assert!((by - vector![-4.0, 10.0, 0.0, 0.0, -40.0, 0.0]).amax() < 1e-12, "{by}");
+}

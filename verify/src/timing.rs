@@ -292,6 +292,53 @@ struct Checker {
     ranges: Vec<Option<[f64; 2]>>,
 }
 
+/// Pairs of rows that exclude larger and larger x, at most.
+const LONGEST_CHAIN: usize = 64;
+
+/// A sum of two rows without u, from below: c x + v sqrt(x) + d.
+struct Sum([Range; 3]);
+
+impl Sum {
+    fn value(&self, x: f64) -> f64 {
+        let [c, v, d] = self.0;
+        c.times(Range::of(x)).plus(v.times(Range::of(x).root().unwrap_or(Range::ALL))).plus(d).low
+    }
+
+    /// An x up to which the sum is above 0 behind `from`, infinity where it is so for good; `None` where that is not known.
+    fn reach(&self, from: f64, top: f64) -> Option<f64> {
+        let [c, v, d] = self.0.map(|x| x.low);
+        if !(self.value(from) >= 0.0 && [c, v, d].iter().all(|x| x.is_finite())) {
+            return None;
+        }
+        // In z = sqrt(x), with a place for the rounding of all that follows.
+        let z = from.sqrt();
+        let rises = |z: f64| c > 0.0 && 2.0 * c * z >= -v * (1.0 + 1e-12);
+        if c >= 0.0 && v >= 0.0 {
+            return (c + v > 0.0 || self.value(from) > 0.0).then_some(f64::INFINITY);
+        }
+        if rises(z) {
+            return Some(f64::INFINITY);
+        }
+        if c > 0.0 {
+            // It falls until z = -v/2c, and rises behind.
+            let [c, v, d] = self.0;
+            let least = v.times(v).over(c.times(Range::of(4.0))).map_or(f64::NEG_INFINITY, |by| d.minus(by).low);
+            if least > 0.0 {
+                return Some(f64::INFINITY);
+            }
+        }
+        // Concave, or falling to where it vanishes: above 0 between two places where it is.
+        let root = (v * v - 4.0 * c * d).max(0.0).sqrt();
+        let zero = match (v >= 0.0, c) {
+            (true, _) => (v + root) / (-2.0 * c),
+            (false, 0.0) => -d / v,
+            (false, _) => 2.0 * d / (root - v),
+        };
+        let end = [1e-12, 1e-9, 1e-6].into_iter().map(|by| (zero * zero * (1.0 - by)).min(top));
+        end.into_iter().find(|&end| end > from && self.value(end) > 0.0)
+    }
+}
+
 /// Proved bounds of x at the nodes.
 struct Nodes(Vec<f64>);
 
@@ -473,11 +520,11 @@ impl Checker {
         at_most_zero(&smooth, Some((&row.v.negated(), &x)), &law.square()).map_err(|t| fault("may let a motion through", t))
     }
 
-    /// Whether the rows at the end (`t` = 1) or the start (-1) of a segment exclude every x above `most`.
-    fn excludes(&self, of: &Functions, t: f64, most: f64) -> bool {
+    /// Pairs of rows at the end (`t` = 1) or the start (-1) of a segment: where their sum is above 0, no u keeps both. And the x that no speed
+    /// exceeds there.
+    fn pairs(&self, of: &Functions, t: f64) -> (Vec<Sum>, f64) {
         let at = |function: &Taylor| function.at(t);
-        let mut top = f64::INFINITY;
-        let mut rows = Vec::new();
+        let (mut top, mut rows, mut flat) = (f64::INFINITY, Vec::new(), Vec::new());
         for joint in 0..self.file.joints.len() {
             for (kind, _) in KINDS {
                 let Some(Row { m, c, v, d }) = self.row(of, joint, kind) else { continue };
@@ -489,25 +536,47 @@ impl Checker {
                     let size = if m.low > 0.0 { m } else { m.negated() };
                     let by = |x: Range| x.over(size).unwrap_or(Range::ALL);
                     rows.push((m.low > 0.0, [by(c), by(v), by(d)]));
+                } else {
+                    flat.push((m.size(), [c, v, d]));
                 }
             }
         }
-        if top <= most {
-            return true;
+        let lower = |sign: bool| rows.iter().filter(move |row| row.0 == sign).map(|row| &row.1);
+        let mut sums = Vec::new();
+        for a in lower(true) {
+            for b in lower(false) {
+                sums.push(Sum([0, 1, 2].map(|k| Range::of(a[k].plus(b[k]).low))));
+                // A joint that turns round: |m| is at most `size`, and u lies between the two rows.
+                for (size, row) in &flat {
+                    let by = |other: &[Range; 3], k: usize| row[k].plus(other[k].times(Range::of(*size))).low;
+                    sums.push(Sum([0, 1, 2].map(|k| Range::of(by(a, k).min(by(b, k))))));
+                }
+            }
         }
-        let root = |x: f64| Range::of(x).root().unwrap_or(Range::ALL);
-        let mut pairs = rows.iter().filter(|row| row.0).flat_map(|a| rows.iter().filter(|row| !row.0).map(move |b| (a.1, b.1)));
-        pairs.any(|(a, b)| {
-            // The sum of both rows: c x + v sqrt(x) + d <= 0, without u.
-            let [c, v, d] = [0, 1, 2].map(|k| a[k].plus(b[k]));
-            let value = |x: f64| c.times(Range::of(x)).plus(v.times(root(x))).plus(d).low;
-            if value(most) < 0.0 {
+        (sums, top)
+    }
+
+    /// Whether the rows on both sides of node `i` exclude every x above `most`: from there on, one pair of rows after the other.
+    fn excludes(&self, functions: &[Functions], i: usize, most: f64) -> bool {
+        let sides = [(i.checked_sub(1).and_then(|i| functions.get(i)), 1.0), (functions.get(i), -1.0)];
+        let (mut pairs, mut top) = (Vec::new(), f64::INFINITY);
+        for (of, t) in sides.into_iter().filter_map(|(of, t)| Some((of?, t))) {
+            let (own, highest) = self.pairs(of, t);
+            pairs.extend(own);
+            top = top.min(highest);
+        }
+        let mut x = most;
+        for _ in 0..LONGEST_CHAIN {
+            if x >= top {
+                return true;
+            }
+            let next = pairs.iter().filter_map(|pair| pair.reach(x, top)).fold(x, f64::max);
+            if next <= x {
                 return false;
             }
-            let grows = c.low > 0.0 && (v.low >= 0.0 || 2.0 * c.low * root(most).low >= -v.low * (1.0 + 1e-12));
-            // Concave between both ends.
-            grows || (v.low >= 0.0 && top.is_finite() && value(top) >= 0.0)
-        })
+            x = next;
+        }
+        x >= top
     }
 
     /// The bound of the file.
@@ -569,12 +638,11 @@ impl Nodes {
         if self.0[i] <= most {
             return true;
         }
-        let left = i.checked_sub(1).and_then(|i| functions.get(i)).is_some_and(|of| checker.excludes(of, 1.0, most));
-        if left || functions.get(i).is_some_and(|of| checker.excludes(of, -1.0, most)) {
+        let holds = checker.excludes(functions, i, most);
+        if holds {
             self.0[i] = most;
-            return true;
         }
-        false
+        holds
     }
 }
 
@@ -633,4 +701,40 @@ fn path_is_smooth(file: &File) -> Result<(), String> {
         }
     }
     Ok(())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{Range, Sum};
+
+    /// From a place on, a sum is above 0 up to its reach, and below 0 right behind that.
+    #[test]
+    fn a_sum_reaches_to_its_next_zero() {
+        let mut state = 1u64;
+        let mut random = |most: f64| {
+            state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+            ((state >> 40) % 17) as f64 / 16.0 * most
+        };
+        let (top, mut ends, mut forever) = (50.0, 0, 0);
+        for _ in 0..5000 {
+            let [c, v, d] = [0, 1, 2].map(|_| random(8.0) - 4.0);
+            let (sum, from) = (Sum([c, v, d].map(Range::of)), random(4.0));
+            let value = |x: f64| c * x + v * x.sqrt() + d;
+            let Some(end) = sum.reach(from, top) else {
+                assert!(value(from) < 1e-3, "{c} {v} {d} from {from}");
+                continue;
+            };
+            assert!(
+                (1..200).all(|k| value(from + (end.min(top) - from) * f64::from(k) / 200.0) > 0.0),
+                "{c} {v} {d} from {from}: {end}"
+            );
+            if end < top {
+                assert!(value(end * (1.0 + 1e-5)) < 0.0, "{c} {v} {d} from {from}: {end}");
+                ends += 1;
+            } else {
+                forever += 1;
+            }
+        }
+        assert!(ends > 500 && forever > 500, "{ends} {forever}");
+    }
 }

@@ -174,6 +174,7 @@ impl Job<'_> {
         };
         faults.of_start(&arm, &path, diagnostics);
         faults.of_gap(&timing, self.asked.gap, diagnostics);
+        faults.of_slow_points(&path, &timing, diagnostics);
         let samples = timing.duration().as_secs_f64() / self.asked.period.as_secs_f64();
         if self.asked.csv.is_some() && samples > result::SAMPLES {
             terminal::error(&format!(

@@ -254,6 +254,12 @@ fn faults() -> Vec<(&'static str, String, String, Vec<&'static str>, Vec<&'stati
         ("too-coarse", of(PENDULUM, "points: [[0], [20]]\n"), "--segments=5", vec!["try `--segments "]),
         ("start-not-held", of(PENDULUM, "points: [[pi/2], [0]]\nlimits: {effort: [8]}\n"), "", vec!["needs 9.81 N m"]),
         ("gap", of(PENDULUM, "points: [[0], [2]]\n"), "--segments=20 --gap=1e-9", vec![" segments leave a gap of"]),
+        (
+            "slow-point",
+            of(CRANE, "points: [[0, 0], [1, 1], [2, 0]]\ncurve: lines\nblend: 1e-6\nlimits: {acceleration: [5, 5]}\n"),
+            "--segments=3000",
+            vec!["the corner of point 2: the motion slows down to"],
+        ),
         ("other-robot", of(SLIDE, "robot: panda\npoints: [[0], [1]]\n"), "", vec!["`panda`", "path.yaml:1:8"]),
         // Of a description.
         (
@@ -282,7 +288,7 @@ fn faults() -> Vec<(&'static str, String, String, Vec<&'static str>, Vec<&'stati
 #[test]
 fn every_fault_has_its_code_and_its_place() {
     for (code, robot, path, options, texts) in faults() {
-        let is_warning = ["start-not-held", "gap", "other-robot"].contains(&code);
+        let is_warning = ["start-not-held", "gap", "slow-point", "other-robot"].contains(&code);
         let (_, error, _) = timed(code, &robot, &path, &options, i32::from(!is_warning));
         assert!(error.contains(code), "{code}: {error}");
         for text in texts {
@@ -365,6 +371,8 @@ fn a_timing_is_proved_again() {
     // Four joints.
     let scara = fs::read_to_string(file("robots/scara.yaml")).expect("a description");
     verified("scara", &scara, SCARA_PATH);
+    // Nodes at which no pair of rows excludes all larger speeds, but one pair after the other does.
+    verified("crane", CRANE, "points: [[0, 0], [1, 1], [2, 0]]\nlimits: {acceleration: [8, 4]}\n");
     let (name, robot, _) = &arms()[0];
     let mut cut = verified(name, robot, "points: [[0], [2]]\n");
     cut["grid"]["k"].as_array_mut().expect("a list").pop();
@@ -402,6 +410,102 @@ fn changed_digits_of_a_timing_are_refused() {
         changed("/path/coefficients/0/0/1", 1e-3);
     }
     assert!(count > 150, "{count}");
+}
+
+/// The places of all numbers of a document.
+fn places(of: &Value, at: &str, found: &mut Vec<String>) {
+    match of {
+        Value::Number(_) => found.push(at.to_owned()),
+        Value::Array(all) => all.iter().enumerate().for_each(|(k, of)| places(of, &format!("{at}/{k}"), found)),
+        Value::Object(all) => all.iter().for_each(|(key, of)| places(of, &format!("{at}/{key}"), found)),
+        _ => {}
+    }
+}
+
+/// The largest share of a limit of a timing of one joint, at 28 places of each segment; `torque` takes q, dq, ddq and the
+/// direction of the path.
+fn largest_share(timing: &Value, torque: &dyn Fn(f64, f64, f64, f64) -> f64) -> f64 {
+    let of = |key: &str| numbers(&timing["grid"][key]);
+    let (s, x, k) = (of("s"), of("x"), of("k"));
+    let knots = numbers(&timing["path"]["knots"]);
+    let limit = |key: &str| timing["limits"][key][0].as_f64().unwrap_or(f64::INFINITY);
+    let effort = &timing["limits"]["effort"][0];
+    let mut most = 0.0f64;
+    for i in 0..k.len() {
+        let h = s[i + 1] - s[i];
+        let middle = 0.5 * (x[i] + x[i + 1]) + k[i];
+        for place in 0..28 {
+            let (b, at) = (f64::from(place) / 27.0, s[i] + h * f64::from(place) / 27.0);
+            let a = 1.0 - b;
+            let x_here = x[i] * a * a + 2.0 * middle * a * b + x[i + 1] * b * b;
+            let u = ((middle - x[i]) * a + (x[i + 1] - middle) * b) / h;
+            let piece = knots.iter().rposition(|knot| *knot <= at).unwrap_or(0).min(knots.len() - 2);
+            let powers = numbers(&timing["path"]["coefficients"][piece][0]);
+            let t = at - knots[piece];
+            let sum = |order: usize| -> f64 {
+                let factor = |k: usize| (0..order).map(|i| (k - i) as f64).product::<f64>();
+                (order..powers.len()).map(|k| factor(k) * powers[k] * t.powi((k - order) as i32)).sum()
+            };
+            let v = x_here.max(0.0).sqrt();
+            let (dq, ddq) = (sum(1) * v, sum(1) * u + sum(2) * x_here);
+            let tau = torque(sum(0), dq, ddq, sum(1).signum());
+            let [low, high] = [0, 1].map(|k| effort[k].as_f64().unwrap_or(f64::INFINITY));
+            most = most
+                .max(dq.abs() / limit("velocity"))
+                .max(ddq.abs() / limit("acceleration"))
+                .max(tau / if tau < 0.0 { low } else { high });
+        }
+    }
+    most
+}
+
+/// A thousand random changes of a number: a change that is accepted has a motion within its limits between all nodes, and no bound above the
+/// optimum.
+#[test]
+#[ignore = "wide"]
+fn no_change_is_accepted_that_samples_refute() {
+    let mut state = 1u64;
+    let mut random = || {
+        state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        (state >> 11) as f64 / (1u64 << 53) as f64
+    };
+    let slide = |_: f64, dq: f64, ddq: f64, direction: f64| 2.0 * ddq + 1.5 * dq + 2.0 * direction;
+    let pendulum = |q: f64, _: f64, ddq: f64, _: f64| ddq + 9.81 * q.sin();
+    let (mut accepted, mut changes) = (0, 0);
+    for (name, robot, path) in arms() {
+        let timing = verified(name, &robot, path);
+        let given = armgen_codegen::source::Source::new("robot", &robot);
+        let (manipulator, _) = armgen_codegen::validate::read(&given).0.expect("a valid arm");
+        let torque: &dyn Fn(f64, f64, f64, f64) -> f64 = if name == "slide" { &slide } else { &pendulum };
+        assert!(largest_share(&timing, torque) <= 1.0 + 1e-9, "{name}");
+        let mut all = Vec::new();
+        places(&timing, "", &mut all);
+        for _ in 0..334 {
+            let mut changed = timing.clone();
+            let place = &all[(random() * all.len() as f64) as usize];
+            let value = changed.pointer_mut(place).expect("a number");
+            let old = number(value);
+            let new = match (random() * 4.0) as u8 {
+                0 => old * (1.0 + (2.0 * random() - 1.0) * 10f64.powf(-9.0 * random())),
+                1 => old + (2.0 * random() - 1.0) * 10f64.powf(-9.0 * random()),
+                2 => -old,
+                _ => 0.0,
+            };
+            *value = new.into();
+            changes += usize::from(new != old);
+            if armgen_verify::timing::check(&manipulator, &changed.to_string()).is_ok() {
+                accepted += usize::from(new != old);
+                let share = largest_share(&changed, torque);
+                assert!(share <= 1.0 + 1e-9, "{name}: {place} from {old} to {new} is accepted, {share}");
+                // Other limits, another path and other speeds at the ends have another optimum.
+                let is_claim = ["/limits", "/path", "/ends"].iter().all(|start| !place.starts_with(start));
+                let bound = number(&changed["lower_bound"]);
+                assert!(!is_claim || bound <= number(&timing["duration"]), "{name}: {place} from {old} to {new}: {bound}");
+            }
+        }
+    }
+    println!("{accepted} of {changes} changes are accepted");
+    assert!(changes > 900 && accepted < changes / 2, "{accepted} of {changes}");
 }
 
 /// The path of the tutorial has the report that the page prints.
@@ -506,6 +610,16 @@ fn torques_of_a_trajectory_are_those_of_the_arm() {
     checked("held", PENDULUM, Some("limits: {effort: [8.26]}\n"), &text, 0);
     let (_, error) = checked("falls", PENDULUM, Some("limits: {effort: [[-8.25, 8.25]]}\n"), &text, 1);
     assert!(error.contains("the torque of joint `pivot` is 8.25"), "{error}");
+    // At an even rate from 0.3 to 2.5 rad: 9.81 N m at pi/2, at most 9.757 in nine places.
+    let text = csv("t,q1,dq1,ddq1", [0.0, 1.0].map(|t| vec![t, 0.3 + 2.2 * t, 2.2, 0.0]));
+    let (_, error) = checked("between", PENDULUM, Some("limits: {effort: [9.809]}\n"), &text, 1);
+    assert!(error.contains("the torque of joint `pivot` is 9.81 N m") && error.contains("at t = 0.57763"), "{error}");
+    // A slide that turns round at 0.37 s: 2 kg, -8 m/s², 2 N of friction before and after.
+    let text = csv("t,q1,dq1,ddq1", [0.0, 0.5].map(|t: f64| vec![t, 2.96 * t - 4.0 * t * t, 2.96 - 8.0 * t, -8.0]));
+    let robot = SLIDE.replace("viscous: 1.5", "viscous: 0");
+    let (_, error) = checked("turns", &robot, Some("limits: {effort: [17.9]}\n"), &text, 1);
+    assert!(error.contains("the torque of joint `slide` is -18 N"), "{error}");
+    checked("turned", &robot, Some("limits: {effort: [18.1]}\n"), &text, 0);
 }
 
 /// What `--csv` writes keeps the limits at its samples, and between them within what the samples leave open.

@@ -302,3 +302,24 @@ pub(super) fn speed<T: RealField + Copy, const N: usize>(
     law = Law { x0: law.x0 * scale, k: law.k * scale, x2: law.x2 * scale, ..law };
     Some(Barrier { law, row: index })
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// m u + x <= 1 bounds x where m is above its error on all of the segment, and nowhere else.
+    #[test]
+    fn a_barrier_needs_an_inertial_term_of_one_sign() {
+        let of = |m: [f64; 3], m_error: f64| {
+            let (c, none) = ([1.0; 3], [0.0; 3]);
+            let row = Row { m, c, v: none, d: none, m_error, c_error: 0.0, v_error: 0.0, d_error: 0.0, bound: 1.0 };
+            barrier(&row, 0.1, 0.2, 0.3)
+        };
+        let law = of([0.2; 3], 0.0).expect("a barrier");
+        // x' = 2 (1 - x)/m from x = 0.2, or more.
+        let exact = 1.0 - 0.8 * (-2.0f64 * 0.1 / 0.2).exp();
+        assert!(law.x2 >= exact && law.x2 < exact + 0.05, "{} {exact}", law.x2);
+        assert!(of([0.2, 0.1, -0.01], 0.0).is_none() && of([-0.01, 0.1, 0.2], 0.0).is_none());
+        assert!(of([0.2; 3], 0.25).is_none());
+    }
+}

@@ -7,6 +7,7 @@ pub mod ghost;
 pub mod gimbal;
 pub mod mass;
 pub mod scara;
+pub mod single;
 
 /// `value` within `tolerance` of `expected`.
 #[track_caller]

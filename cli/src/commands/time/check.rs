@@ -22,8 +22,12 @@ use crate::{input, terminal, DONE, FAULTY};
 
 /// A limit counts as exceeded from this share of it on: sums of the spline round.
 const ROUNDING: f64 = 1e-9;
-/// Torques are looked at in this many places of an interval, both ends included.
+/// Torques are looked at in this many places of an interval, both ends included,
 const PLACES: usize = 9;
+/// and this often at the vertex of the parabola through the three places around an extreme,
+const VERTICES: usize = 4;
+/// which is exact to this part of the distance of places.
+const NEAR: f64 = 1e-6;
 
 /// Samples of a trajectory.
 struct Samples {
@@ -261,6 +265,14 @@ fn derivative<const N: usize>(piece: &Piece<f64, N>) -> Piece<f64, N> {
     of
 }
 
+/// Where the parabola through three points has its vertex, if the middle value is the largest or the least.
+fn vertex(&[(a, x), (b, y), (c, z)]: &[(f64, f64); 3]) -> Option<f64> {
+    let (left, right) = ((y - x) / (b - a), (z - y) / (c - b));
+    let bend = (right - left) / (c - a);
+    let t = 0.5 * (a + b) - 0.5 * left / bend;
+    (left * right < 0.0 && a < t && t < c).then_some(t)
+}
+
 fn judged<const N: usize>(
     manipulator: &Manipulator,
     limits: &Limits,
@@ -307,12 +319,36 @@ fn judged<const N: usize>(
             with_spinner("deriving", || Arm::new(manipulator)).map_err(|reason| unfit(description, manipulator, &reason))?;
         with_spinner("checking torques", || {
             for piece in &pieces {
-                for place in 0..PLACES {
-                    let t = piece.start + piece.length * place as f64 / (PLACES - 1) as f64;
+                let mut judge = |t: f64, directions: &dyn Fn(&SVector<f64, N>) -> SVector<f64, N>| {
                     let at = piece.at(t);
-                    let tau = arm.torque(&at.q, &at.slope, &at.curvature, &at.slope);
+                    let tau = arm.torque(&at.q, &at.slope, &at.curvature, &directions(&at.slope));
                     for joint in 0..dof {
-                        take(3, joint, (t, tau[joint]), limits.effort[joint], place == 0 || place == PLACES - 1);
+                        take(3, joint, (t, tau[joint]), limits.effort[joint], t == piece.start || t == piece.end());
+                    }
+                    tau
+                };
+                let own = |slope: &SVector<f64, N>| *slope;
+                let step = piece.length / (PLACES - 1) as f64;
+                let places = (0..PLACES).map(|k| if k + 1 == PLACES { piece.end() } else { piece.start + step * k as f64 });
+                let places: Vec<(f64, SVector<f64, N>)> = places.map(|t| (t, judge(t, &own))).collect();
+                for joint in (0..dof).filter(|&joint| limits.effort[joint].iter().any(|limit| limit.is_finite())) {
+                    for three in places.windows(3) {
+                        let mut three = [0, 1, 2].map(|k| (three[k].0, three[k].1[joint]));
+                        for _ in 0..VERTICES {
+                            let Some(t) = vertex(&three).filter(|t| (t - three[1].0).abs() > NEAR * step) else { break };
+                            let found = (t, judge(t, &own)[joint]);
+                            three = if t < three[1].0 { [three[0], found, three[1]] } else { [three[1], found, three[2]] };
+                        }
+                    }
+                    // Where a joint turns round, friction has either sign.
+                    for (t, _) in
+                        piece.extremes(joint).into_iter().flatten().filter(|(t, _)| *t > piece.start && *t < piece.end())
+                    {
+                        for sign in [1.0, -1.0] {
+                            let turned =
+                                |slope: &SVector<f64, N>| SVector::from_fn(|i, _| if i == joint { sign } else { slope[i] });
+                            judge(t, &turned);
+                        }
                     }
                 }
             }
@@ -365,6 +401,6 @@ fn report(manipulator: &Manipulator, samples: &Samples, verdict: &Verdict) -> St
     }
     text += &table.text();
     text += "\nPositions, speeds and accelerations are judged everywhere, by roots of polynomials;\n\
-             torques in nine places of each interval.\n";
+             torques in nine places of each interval, and near those at their extremes.\n";
     text
 }

@@ -39,6 +39,8 @@ armgen_codegen::codes! {
         StartNotHeld Warning "start-not-held",
         /// The segments are used up before the gap is as small as wished.
         Gap Warning "gap",
+        /// A place that the motion passes far more slowly than those around it.
+        SlowPoint Warning "slow-point",
         /// The path names another robot.
         OtherRobot Warning "other-robot",
     }

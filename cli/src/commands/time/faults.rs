@@ -5,7 +5,7 @@ use armgen_codegen::document::reader::and;
 use armgen_codegen::kinds::JointKind;
 use armgen_codegen::manipulator::Manipulator;
 use armgen_codegen::source::Span;
-use armgen_runtime::timing::{Limit, PathError, PathFault, Piece, Timing, TimingError, TimingFault};
+use armgen_runtime::timing::{JointPath, Limit, PathError, PathFault, Piece, Timing, TimingError, TimingFault};
 
 use super::arm::Arm;
 use super::code::Code;
@@ -22,6 +22,9 @@ pub(super) struct Faults<'a> {
     pub(super) origins: &'a [Origin],
 }
 
+/// Slow is ds² below this part of its largest value nearby, which is within this part of the path.
+const SLOW: f64 = 1e-4;
+const NEARBY: f64 = 0.02;
 /// How far beyond its range a joint may be, of the range: rounding of splines.
 const BEYOND: f64 = 1e-9;
 
@@ -307,6 +310,38 @@ impl Faults<'_> {
         let reason = format!("at rest at the start {}, beyond the limit", and(&joints));
         let help = "the motion is right from its first moment on; until then something else holds the arm";
         diagnostics.push(self.at((first.start, 0, path.pieces()), Code::StartNotHeld, reason, help));
+    }
+
+    /// Places with ds² far below its largest values on either side nearby: nearly corners, or cusps.
+    pub(super) fn of_slow_points<const N: usize>(
+        &self,
+        path: &JointPath<f64, N, Vec<Piece<f64, N>>>,
+        timing: &Timing<'_, f64, N>,
+        diagnostics: &mut Diagnostics,
+    ) {
+        let profiles: Vec<_> = (0..timing.segments()).filter_map(|i| timing.profile(i)).collect();
+        let nodes: Vec<(f64, f64)> = profiles.iter().map(|profile| (profile.start, profile.x[0])).collect();
+        let (Some(first), Some(last)) = (path.pieces().first(), path.pieces().last()) else { return };
+        let nearby = NEARBY * (last.end() - first.start);
+        let ds = |s: f64| {
+            let i = profiles.partition_point(|profile| profile.start <= s).saturating_sub(1);
+            timing.at(i, (s - profiles[i].start) / profiles[i].length).map_or(0.0, |at| at.ds)
+        };
+        let around = |s: f64| ds(s - nearby).min(ds(s + nearby)).powi(2);
+        let is_slow = |(s, x): (f64, f64)| s - nearby > first.start && s + nearby < last.end() && x < SLOW * around(s);
+        let mut slowest: Option<(f64, f64)> = None;
+        for (i, node) in nodes.iter().enumerate() {
+            if is_slow(*node) && slowest.is_none_or(|(_, x)| node.1 < x) {
+                slowest = Some(*node);
+            }
+            let ends = nodes.get(i + 1).is_none_or(|next| !is_slow(*next));
+            let Some((s, x)) = slowest.take_if(|_| ends) else { continue };
+            let piece = path.pieces().iter().rposition(|piece| piece.start <= s).unwrap_or(0);
+            let share = (x.max(0.0) / around(s)).sqrt();
+            let reason = format!("the motion slows down to {share:.1e} of its speed nearby: nearly a corner, or a cusp");
+            let help = "round the path there: a larger `blend`, or points that do not turn back";
+            diagnostics.push(self.at((s, piece, path.pieces()), Code::SlowPoint, reason, help));
+        }
     }
 
     /// The segments were used up.
