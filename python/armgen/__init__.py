@@ -9,6 +9,8 @@
 from __future__ import annotations
 
 import os
+import re as _re
+import warnings as _warnings
 from collections import namedtuple as _namedtuple
 from typing import Any, Iterable, Mapping, NamedTuple
 
@@ -65,6 +67,10 @@ class DescriptionError(ValueError):
         return DescriptionError, (self.args[0], self.diagnostics, self.source)
 
 
+class DescriptionWarning(UserWarning):
+    """A doubt about a description, such as limits in degrees. `warnings` of the robot has all of them."""
+
+
 class InternalError(RuntimeError):
     """A fault of armgen itself, not of its input."""
 
@@ -106,7 +112,8 @@ def load(
     path: str | os.PathLike[str],
     *,
     base: str | None = None,
-    tip: str | None = None,
+    tip: str | Iterable[str] | Mapping[str, str] | None = None,
+    all: bool = False,
     lock: Mapping[str, str | int | float] | None = None,
     name: str | None = None,
     snap: float | None = None,
@@ -119,11 +126,13 @@ def load(
 ) -> Robot:
     """The arm of a file: a description (robot.yaml), a URDF, a MuJoCo model, or a file of xacro.
 
-    base, tip, lock, name, snap, massless, inertia_as_written: options of the import of a URDF or a MuJoCo model, as `armgen import` has
-    them. strict: warnings are faults. allow: kinds of warnings that are not given. arguments, packages: of xacro, the values of its
-    arguments and the folders of its packages.
+    base, tip, all, lock, name, snap, massless, inertia_as_written: options of the import of a URDF or a MuJoCo model, as `armgen import`
+    has them. tip: the link of the end effector; of several end effectors their links, or a mapping of their names to links. lock: a
+    mapping of joints to positions, such as `{"gripper": 0}`. strict: warnings are faults. allow: kinds of warnings that are not given.
+    arguments, packages: of xacro, the values of its arguments and the folders of its packages.
 
-    Raises DescriptionError with all that is wrong with the file, OSError if it cannot be read.
+    Issues a DescriptionWarning for each kind of doubt. Raises DescriptionError with all that is wrong with the file, OSError if it
+    cannot be read.
     """
     path = os.fspath(path)
     if path.endswith(".xacro"):
@@ -134,8 +143,8 @@ def load(
         with open(path, "rb") as file:
             data = file.read(_LONGEST + 1)
         text = _decoded(path, data)
-    asked = _asked(base, tip, lock, name, snap, massless, inertia_as_written, strict, allow)
-    return _read(path, text, os.path.dirname(path), asked)
+    asked = _asked(base, tip, all, lock, name, snap, massless, inertia_as_written, strict, allow)
+    return _warned(_read(path, text, os.path.dirname(path), asked))
 
 
 def loads(
@@ -143,7 +152,8 @@ def loads(
     name: str = "robot.yaml",
     *,
     base: str | None = None,
-    tip: str | None = None,
+    tip: str | Iterable[str] | Mapping[str, str] | None = None,
+    all: bool = False,
     lock: Mapping[str, str | int | float] | None = None,
     snap: float | None = None,
     massless: bool = False,
@@ -154,7 +164,22 @@ def loads(
     """The arm of a text, which diagnostics call `name`; else as `load`."""
     if not isinstance(text, str):
         raise TypeError(f"a text, not {type(text).__name__}")
-    return _read(name, text, None, _asked(base, tip, lock, None, snap, massless, inertia_as_written, strict, allow))
+    return _warned(_read(name, text, None, _asked(base, tip, all, lock, None, snap, massless, inertia_as_written, strict, allow)))
+
+
+def _warned(robot: Robot) -> Robot:
+    """Issues the warnings of an arm that `load` or `loads` returns: one for each kind, at the line of the caller."""
+    kinds: dict[str, list[Diagnostic]] = {}
+    for found in robot.warnings:
+        kinds.setdefault(found.code, []).append(found)
+    for code, all_of_kind in kinds.items():
+        first, more = all_of_kind[0], len(all_of_kind) - 1
+        # An import writes no file: its description is a text.
+        is_made = robot.report is not None and first.file != robot._state[0]
+        place = f"line {first.line} of robot.text" if is_made else f"{first.file}:{first.line}:{first.column}"
+        rest = f" ({more} more like this in robot.warnings)" if more else ""
+        _warnings.warn(f"{place}: {code}: {first.message}; {first.help}{rest}", DescriptionWarning, stacklevel=3)
+    return robot
 
 
 def _decoded(name: str, data: bytes) -> str:
@@ -187,12 +212,13 @@ def _written_out(path: str, arguments: Mapping[str, str] | None, packages: Mappi
 
 
 # The options of an import, and the values that leave them to it.
-_IMPORT = {"base": None, "tip": None, "lock": [], "name": None, "snap": _SNAP, "massless": False, "inertia_as_written": False}
+_IMPORT = {"base": None, "tip": None, "tips": [], "all": False, "lock": [], "name": None, "snap": _SNAP, "massless": False, "inertia_as_written": False}
 
 
 def _asked(
     base: str | None,
-    tip: str | None,
+    tip: str | Iterable[str] | Mapping[str, str] | None,
+    all: bool,
     lock: Mapping[str, str | int | float] | None,
     name: str | None,
     snap: float | None,
@@ -203,6 +229,14 @@ def _asked(
 ) -> dict[str, Any]:
     if isinstance(allow, str):
         raise TypeError("allow: kinds of warnings, not a single text")
+    for option, value in (("base", base), ("name", name)):
+        if value is not None and not isinstance(value, str):
+            raise TypeError(f"{option}: a text, not {type(value).__name__}")
+    only, tips = _tips(tip)
+    if all and (only or tips):
+        raise TypeError("all takes every end effector: give it without tip")
+    if lock is not None and not isinstance(lock, Mapping):
+        raise TypeError(f'lock: a mapping of joints to positions, such as {{"gripper": 0}}, not {type(lock).__name__}')
     snap = _SNAP if snap is None else float(snap)
     if not 0 <= snap <= 1e-2:
         raise ValueError(f"snap: from 0 to 0.01 rad, not {snap}")
@@ -213,7 +247,9 @@ def _asked(
         locked.append((joint, value if isinstance(value, str) else repr(value)))
     return {
         "base": base,
-        "tip": tip,
+        "tip": only,
+        "tips": tips,
+        "all": bool(all),
         "lock": locked,
         "name": name,
         "snap": snap,
@@ -224,18 +260,69 @@ def _asked(
     }
 
 
+def _tips(tip: Any) -> tuple[str | None, list[tuple[str | None, str]]]:
+    """The link of the only end effector, or the links of several with their names."""
+    if tip is None or isinstance(tip, str):
+        return tip, []
+    try:
+        pairs = list(tip.items()) if isinstance(tip, Mapping) else [(None, link) for link in tip]
+    except TypeError:
+        pairs = [(None, None)]
+    if not pairs or not all(isinstance(link, str) and isinstance(name, str | None) for name, link in pairs):
+        raise TypeError('tip: a link, a list of links, or a mapping of names to links, such as {"left": "left_hand"}')
+    return (pairs[0][1], []) if len(pairs) == 1 and pairs[0][0] is None else (None, pairs)
+
+
+def _in_python(text: str) -> str:
+    """A message with the options of the command as arguments: `tip="tool0"` instead of `--tip tool0`."""
+
+    def option(found: Any) -> str:
+        name, first, second = found.groups()
+        name = name.replace("-", "_")
+        if name in ("all", "massless", "inertia_as_written"):
+            return f"{name}=True"
+        if first is None or name == "snap":
+            return name if first is None else f"{name}={first}"
+        if name != "lock":
+            return f'{name}="{first}"'
+        if second is None:
+            return f'lock["{first}"]'
+        is_plain = second == "VALUE" or _re.fullmatch(r"[-+.\de]+", second)
+        return f'lock={{"{first}": {second if is_plain else _quoted(second)}}}'
+
+    def span(found: Any) -> str:
+        options = found[1].replace(" --", ", --")
+        return "`" + _re.sub(r"--(base|tip|all|lock|snap|massless|inertia-as-written)\b(?: ([^\s=,]+)(?:=([^\s,]+))?)?", option, options) + "`"
+
+    return _re.sub(r"`(--[^`]+)`", span, text)
+
+
+def _quoted(text: str) -> str:
+    return f'"{text}"'
+
+
+def _diagnostics_in_python(found: Iterable[Diagnostic]) -> tuple[Diagnostic, ...]:
+    return tuple(one._replace(message=_in_python(one.message), help=_in_python(one.help)) for one in found)
+
+
 def _read(name: str, text: str, folder: str | None, asked: dict[str, Any]) -> Robot:
     if not text.removeprefix("\ufeff").lstrip().startswith("<"):
         given = [option for option, value in _IMPORT.items() if asked[option] != value]
         if given:
-            raise TypeError(f"{given[0]} is an option of the import of a URDF or a MuJoCo model; {name} is a description")
+            raise TypeError(f"{given[0].replace('tips', 'tip')} is an option of the import of a URDF or a MuJoCo model; {name} is a description")
     stem = os.path.basename(name)
     for ending in (".xacro", ".urdf", ".xml", ".mjcf"):
         stem = stem.removesuffix(ending)
     made = stem if stem.endswith(".yaml") else stem + ".yaml"
-    arm, source, warnings, report = _native.read(name, text, folder, made, asked)
+    try:
+        arm, source, warnings, shown, report, notes = _native.read(name, text, folder, made, asked)
+    except DescriptionError as error:
+        raise DescriptionError(_in_python(error.args[0]), _diagnostics_in_python(error.diagnostics), error.source) from None
     robot = object.__new__(Robot)
-    robot._begin(arm, (name, source, tuple(sorted((key, _frozen(value)) for key, value in asked.items()))), warnings, report)
+    state = (name, source, tuple(sorted((key, _frozen(value)) for key, value in asked.items())))
+    robot._begin(arm, state, report, _in_python(shown))
+    robot.__dict__["warnings"] = _diagnostics_in_python(warnings)
+    robot.__dict__["notes"] = tuple(map(_in_python, notes))
     return robot
 
 
@@ -260,11 +347,10 @@ class Robot:
     def __init__(self) -> None:
         raise TypeError("a robot is made by armgen.load or armgen.loads")
 
-    def _begin(self, arm: Any, state: Any, warnings: tuple[Diagnostic, ...], report: str | None) -> None:
+    def _begin(self, arm: Any, state: Any, report: str | None, shown: str) -> None:
         own = self.__dict__
         facts = arm.facts
-        own["_arm"], own["_state"], own["_report"], own["_mass"] = arm, state, report, facts.pop("mass")
-        own["warnings"] = warnings
+        own["_arm"], own["_state"], own["_report"], own["_shown"], own["_mass"] = arm, state, report, shown, facts.pop("mass")
         for key in ("revolute", "position_limits", "velocity_limits", "effort_limits", "gravity_vector"):
             facts[key] = _constant(facts[key])
         own.update(facts)
@@ -333,7 +419,7 @@ class Robot:
     @property
     def redundancy(self) -> str | None:
         """What `inverse_kinematics` is given beside a pose, where the arm has one joint more than the target asks for: the name of a joint
-        (its value, rad or m) or `"swivel"` (the angle of the elbow about the line from shoulder to wrist, rad).
+        (its value, rad or m) or `"swivel"` (the angle of the elbow about the line from shoulder to wrist, rad). Else None.
         """
         return self._arm.redundancy()
 
@@ -346,13 +432,19 @@ class Robot:
         self._arm.prepare(list(names))
 
     def check(self, *, full: bool = False) -> str:
-        """What the description says and what is doubtful, as `armgen check` prints it."""
-        return self._arm.check(list(dict(self._state[2])["allow"]), full)
+        """The summary of `armgen check`, then what an import has changed, then all warnings. full: with limits, drives and more."""
+        import textwrap
+
+        text = self._arm.check(list(dict(self._state[2])["allow"]), full)
+        if self.notes:
+            notes = (textwrap.fill(note, 98, initial_indent="  - ", subsequent_indent="    ") for note in self.notes)
+            text += f"\nThe import of {self._state[0]} made this description, `text`:\n" + "".join(f"{note}\n" for note in notes)
+        return text + "\n" * bool(self._shown) + self._shown
 
     def show(self, quantity: str, *, symbolic: bool = False, form: str | None = None, digits: int | None = None) -> str:
         """A quantity as `armgen show` prints it.
 
-        symbolic: with the names of parameters instead of their values. form: `"shortest"`, `"closed"` or `"steps"`; closed for arms of up
+        symbolic: with the names under `parameters` of the description instead of their values. form: `"shortest"`, `"closed"` or `"steps"`; closed for arms of up
         to four joints, else shortest, if not given. digits: constants as decimals of so many digits instead of exactly.
         """
         return self._arm.shown(quantity, symbolic, form, digits, "text")
@@ -363,6 +455,9 @@ class Robot:
 
     def sympy(self, quantity: str, *, symbolic: bool = False) -> Any:
         """A quantity as a `sympy.Matrix` of exact entries in the symbols q1, dq1, ... Of a list of matrices, a list.
+
+        symbolic: with the names under `parameters` of the description instead of their values. Symbols have no assumptions, so
+        `subs("q1", 0)` finds them.
 
         Needs sympy (`pip install armgen[sympy]`).
         """
@@ -417,6 +512,9 @@ class Robot:
 
         name: that of the module's file without its ending; the robot's if not given. All others are the options of `armgen generate`.
         """
+        if language not in _LANGUAGES:
+            known = ", ".join(map(_quoted, _LANGUAGES))
+            raise ValueError(f'language: one of {known}, not "{language}"; the header of "c" is C++, too')
         for option, names in (("functions", functions), ("without", without)):
             if isinstance(names, str):
                 raise TypeError(f"{option}: several texts, not a single one")
@@ -452,7 +550,8 @@ class Robot:
             self.prepare()
         fault, functions = self._arm.verified(text, language)
         if fault is not None:
-            raise VerificationError(fault)
+            is_other = text is not None and language == "rust" and "pub fn " not in text
+            raise VerificationError(fault + '; the text was read as Rust: name its language, as in verify(text, "python")' * is_other)
         return {name: {"points": points, "rational": rational, "log2_odds": odds} for name, points, rational, odds in functions}
 
     def __getattr__(self, name: str) -> Any:
@@ -500,6 +599,9 @@ def _constant(values: Any) -> Any:
     array.flags.writeable = False
     return array
 
+
+# What `generate` writes.
+_LANGUAGES = ("rust", "c", "cuda", "javascript", "python", "matlab")
 
 # Behind the name of a parameter that is a word of Python.
 _OF_PYTHON = "__word"

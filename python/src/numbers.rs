@@ -588,7 +588,9 @@ pub(crate) fn array<'py>(
     match array.shape().last() {
         Some(&last) if last == length && !is_number => Ok(array),
         Some(&last) if !is_number => {
-            Err(PyValueError::new_err(format!("{name}: the last axis has {last} entries, not {length}")))
+            let is_turned = array.shape() == [length, last] && !matches!(name, "pose" | "rotation");
+            let hint = if is_turned { "; states go in the leading axes: transpose it" } else { "" };
+            Err(PyValueError::new_err(format!("{name}: the last axis has {last} entries, not {length}{hint}")))
         }
         _ => Err(PyValueError::new_err(format!("{name}: a number, not a vector of {length}"))),
     }

@@ -74,7 +74,11 @@ pub(crate) fn solved<'py>(
         (Some(pose), None, None) => vec![part("pose", &[4, 4], pose)?],
         (None, Some(position), Some(rotation)) => vec![part("position", &[3], position)?, part("rotation", &[3, 3], rotation)?],
         (None, Some(position), None) if !solver.of().orientation => vec![part("position", &[3], position)?],
-        (None, Some(_), None) => return Err(PyTypeError::new_err("rotation is missing: postures are asked for by both")),
+        (None, Some(_), None) => {
+            return Err(PyTypeError::new_err(
+                "rotation is missing: 3 x 3, beside position; where the target is `pointing` its third column counts",
+            ))
+        }
         (None, None, Some(_)) => return Err(PyTypeError::new_err("position is missing")),
         (None, None, None) => return Err(PyTypeError::new_err("a pose is missing, or its position and rotation")),
         _ => return Err(PyTypeError::new_err("a pose, or its position and rotation, not both")),
@@ -135,7 +139,30 @@ pub(crate) fn solved<'py>(
         };
         py.detach(|| on_threads(granted(threads).min(states.div_ceil(MANY)), work));
     }
-    nested(py, &lead, &mut found.into_iter().flatten().map(|found| Postures { robot: robot.clone(), found }))
+    let named = |(state, found): (usize, Found<f64>)| {
+        let reason = (found.verdict == Verdict::Invalid).then(|| why_invalid(&pose(state)));
+        Postures { robot: robot.clone(), found, reason }
+    };
+    nested(py, &lead, &mut found.into_iter().flatten().enumerate().map(named))
+}
+
+/// Why a pose, or the redundancy beside it, has the verdict `Invalid`.
+fn why_invalid(pose: &[[f64; 4]; 4]) -> String {
+    if !pose.as_flattened().iter().all(|entry| entry.is_finite()) {
+        return "an entry of the pose is not finite".to_owned();
+    }
+    let dot = |i: usize, j: usize| (0..3).map(|k| pose[i][k] * pose[j][k]).sum::<f64>();
+    let off = |i: usize, j: usize| (dot(i, j) - if i == j { 1.0 } else { 0.0 }).abs();
+    let largest = (0..9).map(|entry| off(entry / 3, entry % 3)).fold(0.0, f64::max);
+    let minor = |a: usize, b: usize| pose[1][a] * pose[2][b] - pose[1][b] * pose[2][a];
+    let determinant = pose[0][0] * minor(1, 2) + pose[0][1] * minor(2, 0) + pose[0][2] * minor(0, 1);
+    match (determinant < 0.0, largest > 1e-7) {
+        (true, _) => "the rotation is a reflection: its determinant is negative".to_owned(),
+        (false, true) => {
+            format!("the rotation R is not orthonormal: R R' differs from 1 by {largest:.1e}, and 1e-6 is the limit")
+        }
+        (false, false) => "the redundancy is not finite".to_owned(),
+    }
 }
 
 /// Lists of lists by the axes of states; without axes the postures alone.
@@ -175,6 +202,8 @@ pub(crate) fn redundancy_of<'py>(py: Python<'py>, robot: &Arc<Robot>, q: &Bound<
 pub(crate) struct Postures {
     robot: Arc<Robot>,
     found: Found<f64>,
+    /// Why the pose is invalid.
+    reason: Option<String>,
 }
 
 impl Postures {
@@ -192,7 +221,7 @@ impl Postures {
     }
 
     /// "complete": these are all; "unreachable": there is none; "near_double": rounding of the pose could change their number; "continuum": some
-    /// joints can move while the end effector rests; "invalid": the pose is not finite, or its rotation is none.
+    /// joints can move while the end effector rests; "invalid": `reason` names what is wrong with the pose.
     #[getter]
     fn verdict(&self) -> &'static str {
         match self.found.verdict {
@@ -202,6 +231,12 @@ impl Postures {
             Verdict::Continuum => "continuum",
             Verdict::Invalid => "invalid",
         }
+    }
+
+    /// Why the verdict is "invalid"; else None.
+    #[getter]
+    fn reason(&self) -> Option<&str> {
+        self.reason.as_deref()
     }
 
     /// Of a pose without a posture a hint at how much is missing, m; else 0.
@@ -242,7 +277,8 @@ impl Postures {
     /// moved beyond a limit are put at it. The verdict stays as it was.
     fn within_limits(&self, py: Python<'_>) -> PyResult<Postures> {
         let solver = self.robot.solver(py)?;
-        Ok(Postures { robot: self.robot.clone(), found: solver.within(&self.found, |joint| self.robot.position_limits(joint)) })
+        let found = solver.within(&self.found, |joint| self.robot.position_limits(joint));
+        Ok(Postures { robot: self.robot.clone(), found, reason: self.reason.clone() })
     }
 
     /// The joint variables whose largest difference from q is smallest, angles modulo whole turns; None if there is no posture.
@@ -277,6 +313,8 @@ impl Postures {
 
     fn __repr__(&self) -> String {
         let postures = if self.found.len() == 1 { "posture" } else { "postures" };
-        format!("<armgen.Postures of {}: {} {postures}, {}>", self.robot.model.manipulator.name, self.found.len(), self.verdict())
+        let reason = self.reason.as_ref().map_or(String::new(), |reason| format!(": {reason}"));
+        let (name, count, verdict) = (&self.robot.model.manipulator.name, self.found.len(), self.verdict());
+        format!("<armgen.Postures of {name}: {count} {postures}, {verdict}{reason}>")
     }
 }

@@ -6,7 +6,7 @@ use std::sync::{Arc, OnceLock};
 
 use armgen_codegen::catalogue::{self, Quantity};
 use armgen_codegen::derive::parameters::nominal;
-use armgen_codegen::diagnostic::{AnyCode, Diagnostic, Diagnostics, Severity};
+use armgen_codegen::diagnostic::{AnyCode, Colour, Diagnostic, Diagnostics, Severity};
 use armgen_codegen::emit::Language;
 use armgen_codegen::exact::{Number, Polynomial};
 use armgen_codegen::kinds::JointKind;
@@ -215,9 +215,9 @@ impl Arm {
         guarded(py, || postures::solved(py, &self.robot, Target { pose, position, rotation }, redundancy, threads))
     }
 
-    /// What is given to it beside a pose: the name of a joint, or "swivel".
+    /// What is given to it beside a pose: the name of a joint, or "swivel". Without inverse kinematics there is nothing to give.
     fn redundancy(&self, py: Python<'_>) -> PyResult<Option<&str>> {
-        guarded(py, || self.robot.redundancy(py))
+        guarded(py, || Ok(self.robot.redundancy(py).ok().flatten()))
     }
 
     /// The redundancy of a posture, of an array of postures an array.
@@ -295,15 +295,19 @@ fn table(entries: &[catalogue::Parameter]) -> Parameters {
     entries.iter().map(|parameter| (parameter.name.clone(), parameter.nominal.to_f64())).unzip()
 }
 
-/// What was read: the arm, the text with all that it includes, the warnings, and of an import its report as JSON.
-type Read<'py> = (Arm, String, Bound<'py, PyTuple>, Option<String>);
+/// What was read: the arm, the text with all that it includes, the warnings as objects and as the program shows them, and of an import its
+/// report as JSON and in sentences.
+type Read<'py> = (Arm, String, Bound<'py, PyTuple>, String, Option<String>, Vec<String>);
 
 /// What is made of a text: the options of the package, checked there as far as their types go.
 #[derive(FromPyObject)]
 #[pyo3(from_item_all)]
 pub(crate) struct Asked {
     base: Option<String>,
+    /// The link of the only end effector, or the links of several with their names.
     tip: Option<String>,
+    tips: Vec<(Option<String>, String)>,
+    all: bool,
     lock: Vec<(String, String)>,
     name: Option<String>,
     snap: f64,
@@ -335,15 +339,16 @@ pub(crate) fn read<'py>(
         return Err(PyValueError::new_err("name: letters, digits and `_`, a letter first"));
     }
     let source = Source::new(name, text);
-    let (given, source, warnings, report) = match is_xml(source.text()) {
-        false => (source.text().to_owned(), source, PyTuple::empty(py), None),
+    let (given, source, warnings, mut shown, report, notes) = match is_xml(source.text()) {
+        false => (source.text().to_owned(), source, PyTuple::empty(py), String::new(), None, Vec::new()),
         true => {
             let (imported, source, mut found) = guarded(py, || Ok(py.detach(|| imported(&source, folder, &asked))))?;
             found.allow(&asked.allow);
             let is_refused = asked.strict && !found.is_empty();
             let Some(imported) = imported.filter(|_| !is_refused) else { return Err(refused(py, &source, &found)) };
-            let report = imported.report.to_json();
-            (source.text().to_owned(), Source::new(made, imported.yaml), listed(py, &source, &found)?, Some(report))
+            let (report, notes) = (imported.report.to_json(), imported.report.short_lines().to_vec());
+            let warnings = (listed(py, &source, &found)?, found.render(&source, Colour::Never));
+            (source.text().to_owned(), Source::new(made, imported.yaml), warnings.0, warnings.1, Some(report), notes)
         }
     };
     let (valid, mut found) = guarded(py, || Ok(py.detach(|| validate::read_for(&source, Scalar::F64))))?;
@@ -351,8 +356,9 @@ pub(crate) fn read<'py>(
     let is_refused = asked.strict && !found.is_empty();
     let Some((manipulator, places)) = valid.filter(|_| !is_refused) else { return Err(refused(py, &source, &found)) };
     let warnings = warnings.add(listed(py, &source, &found)?)?.cast_into::<PyTuple>()?;
+    shown += &found.render(&source, Colour::Never);
     let robot = guarded(py, || Ok(py.detach(|| Robot::new(source, manipulator, places))))?;
-    Ok((Arm { robot: Arc::new(robot) }, given, warnings, report))
+    Ok((Arm { robot: Arc::new(robot) }, given, warnings, shown, report, notes))
 }
 
 /// Whether a text is to be imported.
@@ -377,6 +383,8 @@ fn imported(source: &Source, folder: Option<PathBuf>, asked: &Asked) -> (Option<
     let options = armgen_import::Options {
         base: asked.base.clone(),
         tip: asked.tip.clone(),
+        tips: asked.tips.clone(),
+        all: asked.all,
         lock: asked.lock.clone(),
         name: asked.name.clone(),
         snap: asked.snap,

@@ -40,6 +40,8 @@ class DescriptionError(ValueError):
     def __init__(self, text: str, diagnostics: tuple[Diagnostic, ...] = (), source: str = "") -> None: ...
     def __reduce__(self) -> Any: ...
 
+class DescriptionWarning(UserWarning): ...
+
 class InternalError(RuntimeError):
     def __init__(self, said: str) -> None: ...
 
@@ -49,7 +51,8 @@ def load(
     path: str | os.PathLike[str],
     *,
     base: str | None = None,
-    tip: str | None = None,
+    tip: str | Iterable[str] | Mapping[str, str] | None = None,
+    all: bool = False,
     lock: Mapping[str, str | int | float] | None = None,
     name: str | None = None,
     snap: float | None = None,
@@ -65,7 +68,8 @@ def loads(
     name: str = "robot.yaml",
     *,
     base: str | None = None,
-    tip: str | None = None,
+    tip: str | Iterable[str] | Mapping[str, str] | None = None,
+    all: bool = False,
     lock: Mapping[str, str | int | float] | None = None,
     snap: float | None = None,
     massless: bool = False,
@@ -100,6 +104,8 @@ class Postures:
     @property
     def verdict(self) -> Literal["complete", "unreachable", "near_double", "continuum", "invalid"]: ...
     @property
+    def reason(self) -> str | None: ...
+    @property
     def miss(self) -> float: ...
     @property
     def branch(self) -> NDArray[np.int64]: ...
@@ -128,6 +134,7 @@ class Robot:
     task: Final[tuple[str, ...]]
     gravity_vector: Final[NDArray[np.float64]]
     warnings: Final[tuple[Diagnostic, ...]]
+    notes: Final[tuple[str, ...]]
     functions: Final[tuple[str, ...]]
     def __init__(self) -> None: ...
     @property

@@ -67,7 +67,7 @@ def test_states_broadcast(panda, q):
 
 
 def test_lengths(panda, q):
-    for wrong, said in [(q[:, :6], "the last axis has 6 entries, not 7"), (0.5, "a number"), (q[0, :0], "has 0 entries")]:
+    for wrong, said in [(q[:, :6], "the last axis has 6 entries, not 7"), (q.T, "leading axes: transpose it"), (0.5, "a number"), (q[0, :0], "has 0 entries")]:
         with pytest.raises(ValueError, match=said):
             panda.gravity(wrong)
     with pytest.raises(ValueError):

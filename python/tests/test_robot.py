@@ -4,6 +4,7 @@ import copy
 import pickle
 import re
 import subprocess
+import warnings
 
 import numpy as np
 import pytest
@@ -76,7 +77,7 @@ def test_files(tmp_path):
     assert pickle.loads(pickle.dumps(robot)) == robot
 
 
-@pytest.mark.parametrize("option", [{"base": "a"}, {"tip": "a"}, {"lock": {"a": 1}}, {"snap": 0}, {"massless": True}])
+@pytest.mark.parametrize("option", [{"base": "a"}, {"tip": "a"}, {"tip": ["a", "b"]}, {"all": True}, {"lock": {"a": 1}}, {"snap": 0}, {"massless": True}])
 def test_options_of_import_need_something_to_import(scara, option):
     with pytest.raises(TypeError, match="is an option of the import"):
         armgen.loads(scara.text, **option)
@@ -84,6 +85,12 @@ def test_options_of_import_need_something_to_import(scara, option):
 
 def test_wrong_options():
     for option, error in [
+        ({"lock": "slide=0"}, TypeError),
+        ({"tip": []}, TypeError),
+        ({"tip": 3}, TypeError),
+        ({"tip": [3]}, TypeError),
+        ({"tip": "hand", "all": True}, TypeError),
+        ({"base": 3}, TypeError),
         ({"lock": {"slide": None}}, TypeError),
         ({"lock": {"slide": True}}, TypeError),
         ({"snap": 1}, ValueError),
@@ -97,6 +104,51 @@ def test_wrong_options():
     for wrong in [b"name: a", None, 3]:
         with pytest.raises(TypeError):
             armgen.loads(wrong)
+
+
+def test_messages_name_arguments():
+    for message, own in [
+        ("`--tip tool0`", '`tip="tool0"`'),
+        ("`--tip a --lock b=0` leaves", '`tip="a", lock={"b": 0}` leaves'),
+        ("`--lock finger=VALUE`", '`lock={"finger": VALUE}`'),
+        ("`--lock b=pi/4` and `--lock c=-1.5e-3`", '`lock={"b": "pi/4"}` and `lock={"c": -1.5e-3}`'),
+        ("`--lock` names `x`", "`lock` names `x`"),
+        ("`--snap TOL`, `--massless`, `--base root`", '`snap=TOL`, `massless=True`, `base="root"`'),
+        ("<!-- tip -->", "<!-- tip -->"),
+    ]:
+        assert armgen._in_python(message) == own
+    with pytest.raises(armgen.DescriptionError, match='`tip="gripper_frame_link"`') as caught:
+        armgen.load(ROOT / "robots/so101.urdf")
+    assert '`lock={"gripper": 0}`' in str(caught.value) and "--" not in caught.value.diagnostics[0].help
+
+
+def test_several_end_effectors():
+    file = ROOT / "tests/data/trees/two_arms.urdf"
+    names = [("left_hand", "right_hand"), ("left", "right")]
+    for robot, (left, right) in [
+        (armgen.load(file, all=True), names[0]),
+        (armgen.load(file, tip=names[0]), names[0]),
+        (armgen.load(file, tip=dict(zip(names[1], names[0]))), names[1]),
+    ]:
+        assert {f"{left}_direct_kinematics", f"{right}_geometric_jacobian"} <= set(robot.functions)
+        assert pickle.loads(pickle.dumps(robot)) == robot and robot.redundancy is None
+    assert armgen.load(file, tip=["left_hand"]).dof == armgen.load(file, tip="left_hand").dof < robot.dof
+
+
+def test_doubts_are_warnings():
+    text = ARM.replace('lower="-1" upper="2"', 'lower="-110" upper="110"')
+    with pytest.warns(armgen.DescriptionWarning, match=r"of robot\.text: .*degrees") as caught:
+        robot = armgen.loads(text, "arm.urdf")
+    assert [warning.filename for warning in caught] == [__file__] * len({found.code for found in robot.warnings})
+    # What a summary says of an import, and all warnings with their places.
+    said = robot.check()
+    assert "1 number taken" in said and all(f"warning[{found.code}]" in said for found in robot.warnings)
+    assert any("1 number taken" in note for note in robot.notes)
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        assert pickle.loads(pickle.dumps(robot)).warnings == robot.warnings
+        kinds = [found.code for found in robot.warnings]
+        assert armgen.loads(text, "arm.urdf", allow=kinds).warnings == () and armgen.loads(ARM, "arm.urdf").warnings == ()
 
 
 def test_every_faulty_file_is_an_exception_with_places():
@@ -204,7 +256,8 @@ def test_texts_are_those_of_the_program(path, tmp_path):
         done = subprocess.run(["armgen", *arguments], capture_output=True, text=True, check=True)
         return done.stdout
 
-    assert robot.check() == program("check", str(path))
+    said = robot.check()
+    assert said.startswith(program("check", str(path))) and said.count("warning[") == len(robot.warnings)
     assert robot.show("gravity") == program("show", str(path), "gravity")
     assert robot.latex("gravity", form=None) == program("show", str(path), "gravity", "--format", "latex")
 
@@ -218,7 +271,7 @@ def test_texts(scara, tmp_path):
         (lambda: scara.show("gravty"), "did you mean `gravity`"),
         (lambda: scara.show("gravity", form="long"), "form"),
         (lambda: scara.show("gravity", digits=0), "digits"),
-        (lambda: scara.generate("fortran"), "language"),
+        (lambda: scara.generate("cpp"), '"c" is C\\+\\+, too'),
         (lambda: scara.generate("python", fma=True), "--fma"),
         (lambda: scara.generate("python", functions=["gravty"]), "do you mean `gravity`"),
     ]:

@@ -25,3 +25,5 @@ def test_a_module_is_verified():
         armgen.load(ROOT / "robots/ur5.yaml").verify(text, "python")
     with pytest.raises(ValueError, match="language"):
         scara.verify(text, "fortran")
+    with pytest.raises(armgen.VerificationError, match='was read as Rust: .*"python"'):
+        scara.verify(text)

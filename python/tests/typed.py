@@ -9,6 +9,8 @@ import armgen
 
 robot: armgen.Robot = armgen.load(Path("robot.yaml"), strict=True, allow=["no-effect"])
 other: armgen.Robot = armgen.loads("<robot/>", "arm.urdf", tip="tool0", lock={"finger": 0.04}, snap=0)
+arms: armgen.Robot = armgen.loads("<robot/>", tip={"left": "left_hand", "right": "right_hand"})
+all_arms: armgen.Robot = armgen.loads("<robot/>", tip=["left_hand", "right_hand"] if robot.notes else None, all=not robot.notes)
 q: NDArray[np.float64] = np.zeros(robot.dof)
 torque: NDArray[np.float64] = robot.inverse_dynamics(q, q, [0.0] * robot.dof)
 many: NDArray[np.float64] = robot.gravity(np.zeros((100, robot.dof)), out=np.empty((100, robot.dof)), threads=0)
@@ -29,6 +31,7 @@ nearest: NDArray[np.float64] | None = postures.nearest_to([0.0] * robot.dof)
 are_all: bool = postures.verdict == "complete" and len(postures) == len(postures.branch_names)
 lists: list[armgen.Postures] = robot.inverse_kinematics(position=np.zeros((5, 3)), rotation=np.eye(3), threads=0)
 given: str | None = robot.redundancy
+invalid: str | None = postures.reason
 odds: float = robot.verify()["gravity"]["log2_odds"]
 robot.page("robot.html")
 robot.prepare("gravity")
