@@ -408,3 +408,41 @@ fn log_det<T: RealField + Copy>(body: &[T; PARAMETERS]) -> Option<T> {
     let diagonal = factor.factor().diagonal();
     Some(diagonal.iter().fold(T::zero(), |sum, x| sum + x.ln()) * lit(2.0))
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// The possible body is a minimum of its objective: a step to either side along each parameter raises it.
+    #[test]
+    fn the_possible_body_is_the_nearest() {
+        let body = [1.0, 0.02, -0.01, 0.05, 0.0075, 1e-4, 0.0075, -2e-4, 0.0, 0.005];
+        let settings = PayloadSettings {
+            gravity: Vector3::new(0.0, 0.0, -9.81),
+            period: 0.01,
+            filter: 20.0,
+            forgetting: 1.0,
+            spread: SVector::<f64, 2>::repeat(0.5),
+            least_rate: 0.02,
+            body,
+            deviation: [0.1, 0.01, 0.01, 0.01, 0.002, 0.002, 0.002, 0.002, 0.002, 0.002],
+            is_slow: false,
+        };
+        let mut estimator = PayloadEstimator::new(settings).unwrap();
+        // An estimate without mass.
+        estimator.z[0] = -1.0;
+        let mut found = estimator.physical();
+        // From far away twelve steps are not enough.
+        for _ in 0..4 {
+            found = estimator.physical();
+        }
+        let least = estimator.objective(&found).unwrap();
+        for k in 0..PARAMETERS {
+            for sign in [-1.0, 1.0] {
+                let mut other = found;
+                other[k] += sign * 1e-3 * settings.deviation[k];
+                assert!(estimator.objective(&other).is_none_or(|at| at > least), "{k}: {found:?}");
+            }
+        }
+    }
+}

@@ -494,3 +494,29 @@ fn column<T: RealField + Copy>(powers: &[T], w: T) -> Column<T> {
         error: error + size * T::default_epsilon() * lit(8.0),
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use nalgebra::SVector;
+
+    /// prod (t - k) vanishes at all nodes, so the polynomial through them is 0 and the ninth coefficient is all that bounds it.
+    #[test]
+    fn the_ninth_coefficient_bounds_what_the_nodes_do_not_see() {
+        let distance = 0.1f64;
+        let piece = Piece { start: 0.0, length: 8.0 * distance, coefficients: [SVector::<f64, 1>::zeros(); 6] };
+        let of = |x: f64| Bounds { inertial: [x], velocity: [x], gravity: [x] };
+        let bounds = [of(0.0), of(distance.powi(-9))];
+        let (nodes, interpolation) = (vec![Node::empty(); NINE], Interpolation::new());
+        let source = Source { piece: &piece, nodes: &nodes, distance, bounds: &bounds, interpolation: &interpolation };
+        for a in 0..NINE - 2 {
+            let mut segment = Segment { node: a, ends: [0.0, 2.0], length: 2.0 * distance, ..Segment::empty() };
+            source.fill(&mut segment);
+            let product = |t: f64| (0..NINE).map(|k| t - k as f64).product::<f64>().abs();
+            let most = (0..=400).map(|i| product(a as f64 + f64::from(i) / 200.0)).fold(0.0, f64::max);
+            for part in &segment.torques {
+                assert!((most..4.0 * most).contains(&part[0].error), "{a}: {} for {most}", part[0].error);
+            }
+        }
+    }
+}

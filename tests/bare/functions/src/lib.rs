@@ -1,7 +1,8 @@
-//! Emitted modules in f32, each with `--trig fast` and with `--trig libm`, and calls of all their functions at a few states; inverse kinematics.
+//! Emitted modules in f32, each with `--trig fast` and with `--trig libm`, and calls of all their functions at a few states; inverse kinematics; steps of the runtime.
 #![no_std]
 
 pub mod postures;
+pub mod steps;
 
 /// A pointer to a function that hands every function of a module to its argument.
 pub type Visit = fn(u32, &mut dyn FnMut(&'static str, &mut dyn FnMut()));
@@ -23,8 +24,9 @@ macro_rules! robot {
     ($name:ident) => {
         #[allow(clippy::excessive_precision)]
         pub mod $name {
-            //! The emitted module and a call of each of its functions.
+            //! The emitted module, its robot of the runtime, and a call of each of its functions.
             include!(concat!(env!("OUT_DIR"), "/", stringify!($name), ".rs"));
+            include!(concat!(env!("OUT_DIR"), "/", stringify!($name), "_runtime.rs"));
             include!(concat!(env!("OUT_DIR"), "/", stringify!($name), "_calls.rs"));
 
             /// Hands a call of each function at a state to `visit`, with the name of the function.

@@ -8,8 +8,9 @@ use std::fmt::Write;
 
 const PREFACE: &str = include_str!("preface.md");
 const FUNCTIONS: &str = include_str!("functions.md");
-/// The module of inverse kinematics.
+/// The module of inverse kinematics, and that of steps of the runtime.
 const POSTURES: &str = "postures";
+const STEPS: &str = "steps";
 const PARTS: [&str; 4] =
     ["trajectory", "inverse kinematics, second order", "adaptive controller", "the arm itself, one step of its simulation"];
 
@@ -77,6 +78,10 @@ pub(crate) fn page(measured: &Measured, m7: &Modules, budgets: &Budgets, printed
     );
     page += FUNCTIONS;
     page += &inverse_kinematics(&costs.functions, m7, budgets, postures);
+    page += "\n## Load and contacts\n\n\
+        Steps of the Panda in f32, with the emitted functions that they call. `payload_step` contains `payload_regressors`.\n\
+        `payload_body` takes Newton steps, at most twelve, and runs when a body is wanted.\n";
+    page += &functions_of(STEPS, &costs.functions, m7, budgets);
     page
 }
 
@@ -105,12 +110,18 @@ fn inverse_kinematics(m4f: &Modules, m7: &Modules, budgets: &Budgets, postures: 
     let mut text = format!(
         "\n## Postures\n\n\
          All [postures](inverse-kinematics.md) of the SCARA and the Puma 560, each at {} poses: {postures} postures, the same on both \
-         processors and the host, bit by bit.\nBudgets are in parentheses.\n\n\
-         | function | M4F | M7 | `.text` | stack |\n|---|---:|---:|---:|---:|\n",
+         processors and the host, bit by bit.\nBudgets are in parentheses.\n",
         armgen_bare_functions::postures::POSES,
     );
-    for (name, measured) in m4f.get(POSTURES).into_iter().flatten() {
-        let (budget, m7) = (cost(&budgets.functions, POSTURES, name), cost(m7, POSTURES, name).instructions);
+    text += &functions_of(POSTURES, m4f, m7, budgets);
+    text
+}
+
+/// A table of the functions of a module.
+fn functions_of(module: &str, m4f: &Modules, m7: &Modules, budgets: &Budgets) -> String {
+    let mut text = String::from("\n| function | M4F | M7 | `.text` | stack |\n|---|---:|---:|---:|---:|\n");
+    for (name, measured) in m4f.get(module).into_iter().flatten() {
+        let (budget, m7) = (cost(&budgets.functions, module, name), cost(m7, module, name).instructions);
         let _ = writeln!(
             text,
             "| `{name}` | {} ({}) | {m7} | {} ({}) | {} ({}) |",

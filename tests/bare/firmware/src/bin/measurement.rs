@@ -1,5 +1,5 @@
 //! Calls every function of each module of `armgen-bare-functions` at a few states and prints its cost. Finds all postures of two
-//! arms and prints them. Lines in addition to those of the library:
+//! arms and prints them, and takes steps of the runtime. Lines in addition to those of the library:
 //!
 //! | line | fields |
 //! |---|---|
@@ -8,7 +8,7 @@
 #![no_main]
 
 use armgen_bare_firmware::{Costs, Output, Stopped};
-use armgen_bare_functions::{postures, MODULES};
+use armgen_bare_functions::{postures, steps, MODULES};
 use core::fmt::Write;
 use core::hint::black_box;
 use panic_halt as _;
@@ -19,8 +19,29 @@ const STATES: u32 = 11;
 fn main() -> ! {
     armgen_bare_firmware::run(|out| {
         modules(out)?;
-        inverse_kinematics(out)
+        inverse_kinematics(out)?;
+        steps(out)
     })
+}
+
+fn steps(out: &mut Output) -> Result<(), Stopped> {
+    let mut watch = steps::Watch::new().ok_or(Stopped)?;
+    let mut costs = Costs::new();
+    for state in 0..STATES {
+        let mut next = watch;
+        let mut is_taken = true;
+        let fits = costs.call("payload_step", &mut || is_taken &= steps::payload_step(black_box(&mut next), black_box(state)))
+            && costs.call("payload_regressors", &mut || _ = black_box(steps::payload_regressors(black_box(state))))
+            && costs.call("payload_estimate", &mut || _ = black_box(steps::payload_estimate(black_box(&next))))
+            && costs.call("payload_body", &mut || _ = black_box(steps::payload_body(black_box(&mut watch))))
+            && costs
+                .call("contact_step", &mut || is_taken &= steps::contact_step(black_box(&mut next), black_box(state)).is_some());
+        if !(fits && is_taken) {
+            return Err(Stopped);
+        }
+        watch = next;
+    }
+    costs.print("steps", out)
 }
 
 fn modules(out: &mut Output) -> Result<(), Stopped> {
