@@ -8,6 +8,7 @@ pub mod rust;
 
 mod documentation;
 mod head;
+mod parameters;
 mod plain;
 mod private;
 

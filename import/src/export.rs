@@ -9,6 +9,8 @@
 //! modified: Rx(alpha) Tx(a), Rz(theta) Tz(d) | motion | body
 //! ```
 //!
+//! Limits of acceleration and jerk need URDF 1.2; without them the file names no version, which means 1.0.
+//!
 //! `damping` is what the joint feels, ratio² · `viscous` of the motor included.
 //!
 //! Decimals are written digit by digit, multiples of pi/12 as the nearest float, which import takes for what it means, and everything else with
@@ -70,6 +72,8 @@ pub(crate) struct Motion {
     pub(crate) position: Option<[String; 2]>,
     pub(crate) velocity: Option<String>,
     pub(crate) effort: Option<String>,
+    pub(crate) acceleration: Option<String>,
+    pub(crate) jerk: Option<String>,
     pub(crate) viscous: Option<String>,
     pub(crate) coulomb: Option<String>,
 }
@@ -261,6 +265,7 @@ impl Writer<'_> {
         };
         let mut optional = |value: &Value| value.as_ref().map(|expression| self.decimal(expression));
         let (velocity, effort) = (optional(&joint.limits.velocity), optional(&joint.limits.effort));
+        let (acceleration, jerk) = (optional(&joint.limits.acceleration), optional(&joint.limits.jerk));
         let coulomb = optional(&joint.friction.coulomb);
         let viscous = match self.rotor_friction(joint) {
             None => joint.friction.viscous.as_ref().map(|expression| self.decimal(expression)),
@@ -272,7 +277,7 @@ impl Writer<'_> {
             (false, Some(_)) => "revolute",
             (false, None) => "continuous",
         };
-        Motion { kind, axis, position, velocity, effort, viscous, coulomb }
+        Motion { kind, axis, position, velocity, effort, acceleration, jerk, viscous, coulomb }
     }
 
     /// Viscous friction of a joint's motor as the joint feels it: ratio² times that at the rotor.
@@ -411,15 +416,18 @@ impl Writer<'_> {
             let stribeck = friction.stribeck.as_ref().is_some_and(|stribeck| is_some(&stribeck.torque));
             stribeck || [&friction.offset, &friction.cubic, &friction.load].into_iter().any(is_some)
         });
-        joints_with("a URDF before version 1.2 has no limits of acceleration and jerk; left out at", &|joint| {
-            joint.limits.acceleration.is_some() || joint.limits.jerk.is_some()
-        });
+        joints_with(
+            "the file follows URDF 1.2, which programs before 2026 refuse, for limits of acceleration and jerk at",
+            &|joint| joint.limits.acceleration.is_some() || joint.limits.jerk.is_some(),
+        );
         joints_with("a URDF has no gains of motors; left out at", &|joint| {
             joint.motor.as_ref().is_some_and(|motor| motor.gain.is_some())
         });
         joints_with("a URDF demands `effort` and `velocity`; 0 stands for one that is not given at", &|joint| {
             let prismatic = joint.kind.as_ref().is_some_and(|kind| kind.value == JointKind::Prismatic);
-            let any = joint.limits.position.is_some() || joint.limits.velocity.is_some() || joint.limits.effort.is_some();
+            let limits = &joint.limits;
+            let numbers = [&limits.velocity, &limits.effort, &limits.acceleration, &limits.jerk];
+            let any = limits.position.is_some() || numbers.into_iter().any(Option::is_some);
             (any || prismatic) && (joint.limits.velocity.is_none() || joint.limits.effort.is_none())
         });
         // Every key, so that none is left out unsaid; the first ones are written.

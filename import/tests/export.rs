@@ -54,6 +54,25 @@ fn what_a_urdf_cannot_hold_is_named() {
     assert!(exported("name: a\nconvention: urdf\ngravity: [0, 0, -9.81]\njoints:\n  - {name: a, type: revolute, axis: [0, 0, 1], link: {mass: 1, inertia: {xx: 1, yy: 1, zz: 1}}}\n").lines.is_empty());
 }
 
+/// They need URDF 1.2, which older programs refuse: only a file with such limits follows it. They come back through an import.
+#[test]
+fn limits_of_acceleration_and_jerk_are_kept() {
+    let arm = |limits: &str| {
+        format!(
+            "name: a\nconvention: urdf\ngravity: [0, 0, -9.81]\njoints:\n  - {{name: a, type: revolute, axis: [0, 0, 1], \
+             limits: {{{limits}}}, link: {{mass: 1, inertia: {{xx: 1, yy: 1, zz: 1}}}}}}\n"
+        )
+    };
+    let both = exported(&arm("velocity: 1.5, effort: 20, acceleration: 12.50, jerk: 300"));
+    let limit = "<limit effort=\"20\" velocity=\"1.5\" acceleration=\"12.50\" deceleration=\"12.50\" jerk=\"300\"/>";
+    assert!(both.urdf.contains("version=\"1.2\"") && both.urdf.contains(limit), "{}", both.urdf);
+    assert!(both.lines.join("\n").contains("URDF 1.2"), "{:?}", both.lines);
+    let back = imported(&both.urdf);
+    assert!(back.contains("acceleration: 12.50") && back.contains("jerk: 300"), "{back}");
+    let neither = exported(&arm("velocity: 1.5, effort: 20"));
+    assert!(!neither.urdf.contains("version=\"1.2\""), "{}", neither.urdf);
+}
+
 /// A joint feels what its motor's bearings take ratio² times: 0.5 + 121² · 1e-5, and 50² · 1/3 in floats.
 #[test]
 fn the_friction_of_rotors_is_part_of_damping_and_their_masses_are_named() {

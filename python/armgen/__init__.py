@@ -351,7 +351,8 @@ class Robot:
         own = self.__dict__
         facts = arm.facts
         own["_arm"], own["_state"], own["_report"], own["_shown"], own["_mass"] = arm, state, report, shown, facts.pop("mass")
-        for key in ("revolute", "position_limits", "velocity_limits", "effort_limits", "gravity_vector"):
+        limits = [f"{kind}_limits" for kind in ("position", "velocity", "effort", "acceleration", "jerk")]
+        for key in ("revolute", *limits, "gravity_vector"):
             facts[key] = _constant(facts[key])
         own.update(facts)
         functions = {function.__name__: function for function in arm.functions(state)}

@@ -232,6 +232,8 @@ class Robot:
     position_limits: Final[NDArray[np.float64]]
     velocity_limits: Final[NDArray[np.float64]]
     effort_limits: Final[NDArray[np.float64]]
+    acceleration_limits: Final[NDArray[np.float64]]
+    jerk_limits: Final[NDArray[np.float64]]
     task: Final[tuple[str, ...]]
     gravity_vector: Final[NDArray[np.float64]]
     warnings: Final[tuple[Diagnostic, ...]]

@@ -129,8 +129,11 @@ impl Arm {
         facts.set_item("revolute", joints.iter().map(|joint| joint.kind == JointKind::Revolute).collect::<Vec<_>>())?;
         let positions = (0..joints.len()).map(|joint| self.robot.position_limits(joint).to_vec());
         facts.set_item("position_limits", positions.collect::<Vec<_>>())?;
-        facts.set_item("velocity_limits", joints.iter().map(|joint| limit(&joint.limits.velocity)).collect::<Vec<_>>())?;
-        facts.set_item("effort_limits", joints.iter().map(|joint| limit(&joint.limits.effort)).collect::<Vec<_>>())?;
+        let limits = joints.iter().map(|joint| &joint.limits);
+        facts.set_item("velocity_limits", limits.clone().map(|own| limit(&own.velocity)).collect::<Vec<_>>())?;
+        facts.set_item("effort_limits", limits.clone().map(|own| limit(&own.effort)).collect::<Vec<_>>())?;
+        facts.set_item("acceleration_limits", limits.clone().map(|own| limit(&own.acceleration)).collect::<Vec<_>>())?;
+        facts.set_item("jerk_limits", limits.map(|own| limit(&own.jerk)).collect::<Vec<_>>())?;
         facts.set_item("task", PyTuple::new(py, arm.task.iter().map(|row| row.name()))?)?;
         facts.set_item("gravity_vector", arm.gravity.each_ref().map(number).to_vec())?;
         let rotors = joints.iter().filter_map(|joint| joint.motor.as_ref()).map(|motor| &motor.mass);

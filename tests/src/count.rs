@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use syn::visit::{self, Visit};
 
-use crate::signatures::INTO;
+use crate::signatures::{INTO, OF_PARAMETERS};
 
 /// Operations in the body of a function.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -24,7 +24,7 @@ pub struct Operations {
 }
 
 /// Operations of every public function of a module. They include its parts, `NAME_part_1` and so on, and the writer of its
-/// result, `NAME_into`.
+/// result, `NAME_into`. Functions that every module has word for word are left out.
 ///
 /// Panics where the text is not Rust, or holds a construct that no emitted function may hold. Such constructs are other operators
 /// or calls, an index that is no literal, loops, branches, macros and unsafe blocks.
@@ -34,6 +34,9 @@ pub fn count(text: &str) -> BTreeMap<String, Operations> {
     for item in &file.items {
         let syn::Item::Fn(function) = item else { continue };
         let name = function.sig.ident.to_string();
+        if OF_PARAMETERS.contains(&name.as_str()) {
+            continue;
+        }
         let public = matches!(function.vis, syn::Visibility::Public(_));
         let whole = name.strip_suffix(INTO).or(if public { Some(name.as_str()) } else { part_of(&name) });
         let Some(whole) = whole else { continue };

@@ -6,6 +6,9 @@ pub type Signature = (String, Vec<String>);
 /// Suffix of functions that write their result to a place of the caller.
 pub const INTO: &str = "_into";
 
+/// Functions over parameters, which have the same text in every module.
+pub const OF_PARAMETERS: [&str; 2] = ["parameter_index", "payload_parameters"];
+
 /// The signatures of the functions after each occurrence of `start`, which ends where the name begins.
 pub fn signatures(text: &str, start: &str) -> Vec<Signature> {
     let signature = |rest: &str| {
@@ -21,7 +24,7 @@ pub fn signatures(text: &str, start: &str) -> Vec<Signature> {
 pub fn of_module(text: &str) -> Vec<Signature> {
     // Those for many states are indented.
     let mut all = signatures(text, "\npub fn ");
-    all.retain(|(name, _)| !name.ends_with(INTO));
+    all.retain(|(name, _)| !name.ends_with(INTO) && !OF_PARAMETERS.contains(&name.as_str()));
     all
 }
 

@@ -63,6 +63,23 @@ fn the_scara_is_cheap() {
     }
 }
 
+/// The load of `everything.yaml` gives the ten numbers of its parameters, and each parameter has its place.
+#[test]
+fn a_payload_has_the_parameters_of_its_description() {
+    use armgen_tests::emitted::everything::{parameter_index, payload_parameters, NOMINAL_PARAMETERS, PARAMETER_NAMES};
+    const FIRST: Option<usize> = parameter_index("mp");
+    assert!(PARAMETER_NAMES.iter().enumerate().all(|(place, name)| parameter_index(name) == Some(place)));
+    assert_eq!(["", "m", "m10", "mp "].map(parameter_index), [None; 4]);
+    let inertia = [[0.01, 0.001, -0.002], [0.001, 0.012, 0.003], [-0.002, 0.003, 0.015]];
+    let found = payload_parameters(2.5, &[0.04, 0.01, -0.02], &inertia);
+    for (found, described) in found.iter().zip(&NOMINAL_PARAMETERS[FIRST.expect("there is a payload")..]) {
+        assert!((found - described).abs() <= 4.0 * f64::EPSILON * described.abs(), "{found}, {described}");
+    }
+    // It has no meaning without a payload.
+    assert!(emitted("everything_f32").text.contains("pub fn payload_parameters("));
+    assert!(!emitted("scara").text.contains("payload_parameters"));
+}
+
 fn generate(name: &str, text: &str) -> String {
     let source = Source::new(name, text);
     let (generated, diagnostics) = armgen_codegen::generate(&source, &Options::default());

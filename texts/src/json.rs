@@ -43,6 +43,8 @@ fn of_arm(arm: &Manipulator) -> Value {
                 "position": joint.limits.position.as_ref().map(|limits| limits.each_ref().map(Number::to_f64)),
                 "velocity": joint.limits.velocity.as_ref().map(Number::to_f64),
                 "effort": joint.limits.effort.as_ref().map(Number::to_f64),
+                "acceleration": joint.limits.acceleration.as_ref().map(Number::to_f64),
+                "jerk": joint.limits.jerk.as_ref().map(Number::to_f64),
                 "mass": joint.link.iter().map(|part| number(&part.body.mass)).sum::<f64>(),
             })
         })

@@ -5,6 +5,9 @@ pub(crate) const STRIBECK: &str = "with Stribeck friction";
 /// Lines for robots with load-dependent friction.
 pub(crate) const LOAD: &str = "with load friction";
 
+/// Lines for modules with the parameters of a payload.
+pub(crate) const PAYLOAD: &str = "with a payload";
+
 /// Lines for modules that have the acceleration of free fall as an argument.
 pub(crate) const GRAVITY: &str = "with gravity as an argument";
 

@@ -13,6 +13,7 @@ mod items;
 mod javascript;
 mod lexer;
 pub mod matlab;
+pub(crate) mod parameters;
 mod parser;
 mod plain;
 mod python;
@@ -192,7 +193,7 @@ impl Module {
         if !constants.contains_key("DOF") {
             return Err(missing("number of joints `DOF`"));
         }
-        items.check_companions()?;
+        items.check_companions(&constants)?;
         let trig = sines::check(&items.private, real)?;
         let shared =
             Shared { real, parts: &items.parts, written: &items.written, fast: trig == Some("fast"), steps: AtomicUsize::new(0) };

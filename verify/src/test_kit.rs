@@ -21,9 +21,9 @@ use crate::equations::parameters::Vector;
 use crate::equations::state::State;
 use crate::float::Arguments;
 use crate::formula::Formula;
-use crate::marked::{marked, GRAVITY, LOAD};
+use crate::marked::{marked, GRAVITY, LOAD, PAYLOAD};
 use crate::program::{Argument, Inputs};
-use crate::reader::Module;
+use crate::reader::{parameters, Module};
 use crate::reference::{BaseParameters, Wanted, PROMISES};
 use crate::stream::Stream;
 
@@ -109,6 +109,8 @@ struct Kit {
     values: Vec<Value>,
     /// Whether friction depends on the load.
     loaded: bool,
+    /// Whether the parameters include those of a payload.
+    carries: bool,
 }
 
 impl Kit {
@@ -129,7 +131,8 @@ impl Kit {
         let mut stream = Stream::new(20_240_229);
         let present = |name: &str| module.functions.iter().any(|(f, _)| f == name);
         let (states, values, loaded) = (Vec::new(), Vec::new(), present("load_friction"));
-        let mut kit = Kit { robot: manipulator.name.clone(), real: module.real, sizes: sizes.clone(), states, values, loaded };
+        let (robot, carries) = (manipulator.name.clone(), parameters::has_payload(&module.constants));
+        let mut kit = Kit { robot, real: module.real, sizes: sizes.clone(), states, values, loaded, carries };
         for index in 0..STATES {
             let arguments = arguments(&mut stream, &sizes);
             let state = wide_state(&arguments, manipulator).ok_or("a joint variable out of reach")?;
@@ -225,7 +228,7 @@ pub fn test_kit(manipulator: &Manipulator, module: &Module, import: &str, origin
          fn values() -> Vec<(&'static str, usize, Vec<Real>, Vec<Real>)> {{\n    vec![\n{values}    ]\n}}\n"
     );
     let template = include_str!("test_kit/template.rs").split_once("// BEGIN\n").map_or("", |(_, rest)| rest);
-    let template = marked(template, "//", &[(LOAD, kit.loaded), (GRAVITY, kit.sizes.gravity)]);
+    let template = marked(template, "//", &[(LOAD, kit.loaded), (PAYLOAD, kit.carries), (GRAVITY, kit.sizes.gravity)]);
     text += &kit.with_gravity(template, &|name| format!("{name}("), "&FREE_FALL");
     Ok(text)
 }

@@ -180,7 +180,7 @@ fn programs_get_one_document_for_all_files() {
     assert_eq!((&files[1]["valid"], &files[1]["errors"], &files[1]["summary"]), (&false.into(), &17.into(), &Value::Null));
     let joints = files[0]["summary"]["joints"].as_array().expect("a list");
     let keys: Vec<&str> = joints[0].as_object().expect("a joint").keys().map(String::as_str).collect();
-    assert_eq!(keys, ["effort", "mass", "name", "position", "type", "velocity"]);
+    assert_eq!(keys, ["acceleration", "effort", "jerk", "mass", "name", "position", "type", "velocity"]);
     let text = err(&check(&["check", &scara, &faulty], 1));
     let source = fs::read_to_string(&faulty).expect("a description");
     for diagnostic in files.iter().flat_map(|file| file["diagnostics"].as_array().expect("a list")) {

@@ -4,6 +4,9 @@ use std::collections::BTreeSet;
 use std::fmt::Write;
 
 use super::documentation::{self, Block, Described, DescribedParameters, Link};
+use super::parameters::{
+    has_payload, payload_blocks, DECLARED_INDEX, DECLARED_PAYLOAD, INDEX, JAVASCRIPT_INDEX, JAVASCRIPT_PAYLOAD,
+};
 use super::plain::{
     asks_for_exponentials, asks_for_signs, camel, constants, constants_documentation, described, expression, head, waves, Syntax,
     Value,
@@ -46,6 +49,9 @@ pub fn print(module: &Module, origin: &Origin, notes: &Notes) -> String {
     for (constant, (_, comment)) in constants(module, 0).iter().zip(&documentation) {
         let _ = writeln!(text, "\n{comment}export const {} = {};", constant.name, value_of(&constant.value));
     }
+    if !module.parameters.is_empty() {
+        let _ = write!(text, "\n{}{JAVASCRIPT_INDEX}", comment(&[Block::text(INDEX)], &[]));
+    }
     text += "\n";
     text += CHECK;
     if asks_for_sines(module) {
@@ -59,6 +65,9 @@ pub fn print(module: &Module, origin: &Origin, notes: &Notes) -> String {
     if asks_for_exponentials(module) {
         text += "\n";
         text += &private(STRIBECK);
+    }
+    if has_payload(module) {
+        let _ = write!(text, "\n{}{JAVASCRIPT_PAYLOAD}", comment(&payload_blocks(), &[]));
     }
     for function in &module.functions {
         print_function(&mut text, module, function, notes);
@@ -77,6 +86,12 @@ pub fn declarations(module: &Module, origin: &Origin, notes: &Notes) -> String {
     let documentation = constants_comments(&DescribedParameters::of(module));
     for (constant, (_, comment)) in constants(module, 0).iter().zip(&documentation) {
         let _ = writeln!(text, "\n{comment}export declare const {}: {};", constant.name, type_of(&constant.value));
+    }
+    if !module.parameters.is_empty() {
+        let _ = write!(text, "\n{}{DECLARED_INDEX}", comment(&[Block::text(INDEX)], &[]));
+    }
+    if has_payload(module) {
+        let _ = write!(text, "\n{}{DECLARED_PAYLOAD}", comment(&payload_blocks(), &[]));
     }
     let mut shapes: BTreeSet<Vec<usize>> = BTreeSet::new();
     for function in &module.functions {

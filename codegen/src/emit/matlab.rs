@@ -7,6 +7,7 @@
 use std::fmt::Write;
 
 use super::documentation::{self, Block, Described, DescribedParameters, Link};
+use super::parameters::{has_payload, payload_blocks, INDEX, MATLAB_PAYLOAD};
 use super::plain::{camel, constants, constants_documentation, described, expression, head, places, waves, Syntax, Value};
 use super::private::filled;
 use super::{Language, Notes, Origin};
@@ -74,6 +75,12 @@ impl Syntax for Matlab {
 pub fn print(module: &Module, origin: &Origin, notes: &Notes) -> Vec<File> {
     let head = head(module, Language::Matlab, origin, notes, "%");
     let mut files = vec![contents(module, &head), model(module, &head)];
+    if has_payload(module) {
+        let [signature, body] = MATLAB_PAYLOAD;
+        let comment = comment(&payload_blocks(), "PAYLOADPARAMETERS  ");
+        let text = format!("{signature}{comment}\n{}%#codegen\n{body}", origin_of(&head));
+        files.push(File { name: "payloadParameters.m".into(), text });
+    }
     files.extend(module.functions.iter().map(|function| file(module, function, &head, notes)));
     files
 }
@@ -81,12 +88,21 @@ pub fn print(module: &Module, origin: &Origin, notes: &Notes) -> Vec<File> {
 /// What `help` shows of the package.
 fn contents(module: &Module, head: &str) -> File {
     let functions: Vec<_> = module.functions.iter().map(|function| (function.name(), function.quantity)).collect();
-    File { name: "Contents.m".into(), text: format!("{}\n{head}", contents_comment(&module.name, &functions)) }
+    File {
+        name: "Contents.m".into(),
+        text: format!("{}\n{head}", contents_comment(&module.name, &functions, has_payload(module))),
+    }
 }
 
 /// First comment of the file of contents.
-pub fn contents_comment(robot: &str, functions: &[(String, &Quantity)]) -> String {
+fn contents_comment(robot: &str, functions: &[(String, &Quantity)], has_payload: bool) -> String {
     let mut rows = vec![("model".to_string(), "Names, limits and parameters.".to_string())];
+    if has_payload {
+        rows.push((
+            "payloadParameters".into(),
+            "Parameters of a payload from its mass, its centre of mass and its inertia.".into(),
+        ));
+    }
     let title = |quantity: &Quantity| documentation::linked(quantity.documentation.title, &link);
     rows.extend(functions.iter().map(|(name, quantity)| (camel(name), title(quantity))));
     let width = rows.iter().map(|(name, _)| name.len()).max().unwrap_or(0);
@@ -134,6 +150,11 @@ fn model(module: &Module, head: &str) -> File {
     let documentation = constants_comments(&DescribedParameters::of(module));
     for (constant, (_, comment)) in constants(module, 1).iter().zip(&documentation) {
         let _ = writeln!(text, "\n{comment}    m.{} = {};", field(&constant.name), value_of(&constant.value));
+    }
+    if !module.parameters.is_empty() {
+        let places = module.parameters.iter().zip(1..).map(|(parameter, place)| format!("'{}', {place}", parameter.name));
+        let places: Vec<String> = places.collect();
+        let _ = writeln!(text, "\n% {INDEX}\n    m.parameterIndex = struct({});", places.join(", "));
     }
     text += "end\n";
     File { name: "model.m".into(), text }

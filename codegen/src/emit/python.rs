@@ -7,6 +7,7 @@ mod native;
 use std::fmt::Write;
 
 use super::documentation::{self, Block, Described, DescribedParameters, Link};
+use super::parameters::{has_payload, payload_blocks, INDEX, PYTHON_INDEX, PYTHON_PAYLOAD};
 use super::plain::{
     asks_for_exponentials, asks_for_signs, constants, constants_documentation, described, expression, head, waves, Syntax, Value,
 };
@@ -53,7 +54,9 @@ pub fn print(module: &Module, origin: &Origin, notes: &Notes) -> String {
     let public: Vec<String> = constants(module, 0)
         .iter()
         .map(|constant| constant.name.to_string())
+        .chain((!module.parameters.is_empty()).then(|| "PARAMETER_INDEX".into()))
         .chain(["DTYPE".into(), "by_joint".into()])
+        .chain(has_payload(module).then(|| "payload_parameters".into()))
         .chain(module.functions.iter().filter_map(|function| structure(function.quantity)))
         .chain(module.functions.iter().map(Function::name))
         .collect();
@@ -69,6 +72,9 @@ pub fn print(module: &Module, origin: &Origin, notes: &Notes) -> String {
     for (constant, (_, comment)) in constants(module, 0).iter().zip(&documentation) {
         let _ = writeln!(text, "\n{comment}{}: Final = {}", constant.name, python.value(&constant.value));
     }
+    if !module.parameters.is_empty() {
+        let _ = write!(text, "\n# {INDEX}\n{PYTHON_INDEX}");
+    }
     let dtype = match module.scalar {
         Scalar::F64 => "float64",
         Scalar::F32 => "float32",
@@ -83,6 +89,10 @@ pub fn print(module: &Module, origin: &Origin, notes: &Notes) -> String {
     }
     if asks_for_exponentials(module) {
         let _ = writeln!(text, "\n{}", private(STRIBECK));
+    }
+    if has_payload(module) {
+        let [signature, body] = PYTHON_PAYLOAD;
+        let _ = writeln!(text, "\n{signature}{}{body}", docstring(&payload_blocks()));
     }
     let mut known: Vec<String> = Vec::new();
     for function in &module.functions {
@@ -128,8 +138,13 @@ pub fn constants_comments(described: &DescribedParameters) -> Vec<(String, Strin
 pub fn function_comment(described: &Described<'_>, note: Option<&str>) -> String {
     let mut all = described.blocks(true, note);
     all.push(Block::text("Leading axes are those of many states; `m[..., i, j]` is row i, column j."));
+    docstring(&all)
+}
+
+/// The documentation of a function as its first statement.
+fn docstring(blocks: &[Block]) -> String {
     let mut text = String::new();
-    for (i, line) in documentation::plain(&all, &link).iter().enumerate() {
+    for (i, line) in documentation::plain(blocks, &link).iter().enumerate() {
         let line = line.replace('\\', "/").replace("\"\"\"", "'''");
         text += format!("    {}{line}", if i == 0 { "\"\"\"" } else { "" }).trim_end();
         text += "\n";

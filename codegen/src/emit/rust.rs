@@ -16,6 +16,7 @@ use proc_macro2::TokenStream;
 use quote::{format_ident, quote, ToTokens};
 
 use super::documentation::{self as common, Described, DescribedParameters};
+use super::parameters::{has_payload, INDEX, RUST_INDEX, RUST_PAYLOAD};
 use super::plain::{asks_for_exponentials, asks_for_signs};
 use super::private::SIGN;
 use super::{Language, Notes, Origin};
@@ -197,6 +198,7 @@ fn constants(module: &Module) -> TokenStream {
         [] => task_constants("", &module.task, &documented),
         tips => end_effectors(tips, &documented),
     };
+    let same_for_all = functions_of_parameters(module);
     let base = base_constants(module, &documented);
     let structures = structures(module, false);
     quote! {
@@ -226,10 +228,29 @@ fn constants(module: &Module) -> TokenStream {
         #of_nominal
         #[allow(dead_code, clippy::all)]
         pub const NOMINAL_PARAMETERS: [Real; PARAMETERS] = [#(#nominal),*];
+        #same_for_all
         #gravity
         #base
         #(#structures)*
     }
+}
+
+/// The functions over parameters that are the same in every module that has them.
+fn functions_of_parameters(module: &Module) -> TokenStream {
+    let index = (!module.parameters.is_empty()).then(|| {
+        let (title, function) = (format!(" {INDEX}"), tokens(RUST_INDEX));
+        quote! {
+            #[doc = #title]
+            #[doc = ""]
+            #[doc = " `None` for a name that no parameter has. It may initialise a constant."]
+            #function
+        }
+    });
+    let payload = has_payload(module).then(|| {
+        let (lines, function) = (documentation::lines(&super::parameters::payload_blocks()), tokens(RUST_PAYLOAD));
+        quote!(#(#[doc = #lines])* #function)
+    });
+    quote!(#index #payload)
 }
 
 /// The documentation of a function in a module without error bounds.

@@ -42,7 +42,7 @@ use crate::document::Expression;
 use crate::kinds::JointKind;
 use crate::source::Span;
 pub use densities::{density_of_cuboid, doubt_of_density};
-use drives::{check_effort, check_friction, check_velocity};
+use drives::{check_acceleration, check_effort, check_friction, check_velocity};
 use frames::check_reference;
 pub(super) use holding::check_holding;
 use slips::{in_text, likely_tensors, single_slip, written_as};
@@ -50,6 +50,8 @@ use slips::{in_text, likely_tensors, single_slip, written_as};
 const LONGEST: f64 = 30.0;
 const MASS_PER_CUBE: f64 = 2000.0;
 const OUTLYING: f64 = 5.0;
+/// No arm carries so many times its own mass.
+const HEAVIEST_LOAD: f64 = 2.0;
 const LEAD: f64 = 11_340.0;
 const LIGHT_ALLOY: f64 = 2700.0;
 const OF_LEAD_BALL: f64 = 0.5;
@@ -156,6 +158,7 @@ pub(super) fn check(
         arm.check_motor(joint, &called, context);
         check_stroke(joint, &called, context);
         check_velocity(joint, &called, context);
+        check_acceleration(joint, &called, context);
         check_effort(joint, &called, context);
         check_friction(joint, &called, context);
         if !doubted {
@@ -472,7 +475,7 @@ impl Arm<'_> {
         if self.reach < SMALL_REACH || mass <= 0.0 {
             return;
         }
-        let is_heavy = !doubted && !weightless && total > 0.0 && mass > OUTLYING * total;
+        let is_heavy = !doubted && !weightless && total > 0.0 && mass > HEAVIEST_LOAD * total;
         if let (true, Some(expression)) = (is_heavy, &payload.mass) {
             let span = written(expression, context);
             let message = format!(

@@ -8,7 +8,9 @@ use super::{Body, Motion, Pose, Urdf};
 pub(super) fn print(urdf: &Urdf) -> String {
     let mut text = String::from("<?xml version=\"1.0\"?>\n");
     let mut line = |words: String| writeln!(text, "{words}").expect("a text takes it");
-    line(format!("<robot name=\"{}\">", escaped(&urdf.name)));
+    let newer = urdf.parts.iter().filter_map(|part| part.motion.as_ref()).any(Motion::needs_version_1_2);
+    let version = if newer { " version=\"1.2\"" } else { "" };
+    line(format!("<robot name=\"{}\"{version}>", escaped(&urdf.name)));
     line("  <link name=\"base\"/>".to_owned());
     for part in &urdf.parts {
         let kind = part.motion.as_ref().map_or("fixed", |motion| motion.kind);
@@ -48,17 +50,27 @@ fn origin(pose: &Pose) -> String {
     text + "/>"
 }
 
+impl Motion {
+    /// Whether it has limits that a URDF has since version 1.2.
+    fn needs_version_1_2(&self) -> bool {
+        self.acceleration.is_some() || self.jerk.is_some()
+    }
+}
+
 fn motion_lines(motion: &Motion) -> Vec<String> {
     let mut lines = vec![format!("<axis xyz=\"{}\"/>", motion.axis.join(" "))];
     let zero = || "0".to_owned();
     let (velocity, effort) = (motion.velocity.clone(), motion.effort.clone());
-    if motion.kind != "continuous" || velocity.is_some() || effort.is_some() {
+    if motion.kind != "continuous" || velocity.is_some() || effort.is_some() || motion.needs_version_1_2() {
         let position = match &motion.position {
             Some([low, high]) => format!("lower=\"{low}\" upper=\"{high}\" "),
             None => String::new(),
         };
         let (velocity, effort) = (velocity.unwrap_or_else(zero), effort.unwrap_or_else(zero));
-        lines.push(format!("<limit {position}effort=\"{effort}\" velocity=\"{velocity}\"/>"));
+        // A description has one limit for both.
+        let newer = [("acceleration", &motion.acceleration), ("deceleration", &motion.acceleration), ("jerk", &motion.jerk)];
+        let newer: String = newer.iter().filter_map(|(name, value)| Some(format!(" {name}=\"{}\"", value.as_ref()?))).collect();
+        lines.push(format!("<limit {position}effort=\"{effort}\" velocity=\"{velocity}\"{newer}/>"));
     }
     let friction = [("damping", &motion.viscous), ("friction", &motion.coulomb)];
     let given: Vec<String> =

@@ -210,6 +210,12 @@ fn texts_and_items(tally: &mut Tally, scara: &Given) {
     );
     let without = |begins: &str| module.replace(item(module, begins), "");
     tally.text(scara, "no struct", &without("pub struct EquationsOfMotion"), &[(Companions, "come together")]);
+    let no_index = [(Companions, "the module does not have `parameter_index`")];
+    tally.text(scara, "no places of parameters", &without("pub const fn parameter_index("), &no_index);
+    let payload = include_str!("../reader/parameters.rs");
+    let payload = payload.split("RUST_PAYLOAD: &str = r#\"").nth(1).and_then(|rest| rest.split("\"#").next()).expect("its text");
+    let foreign = [(Companions, "`payload_parameters` of parameters that the module does not have")];
+    tally.text(scara, "a payload of none", &format!("{module}{payload}"), &foreign);
     let names = [(PrivateNames, "is not a private item of an emitted module"), (PrivateNeeded, "is needed by no function")];
     appended(tally, &format!("fn table() -> Real {{ {STATIC} 0.0 }}"), &names);
     appended(tally, "fn unused() -> Real { mod a { #[path = \"b.rs\"] mod b; } 0.0 }", &names);

@@ -15,6 +15,7 @@ use std::collections::BTreeMap;
 
 use armgen_description::language::Language;
 
+use super::parameters::{has_payload, names, C_PAYLOAD};
 use super::plain::{in_order, promised, sizes, Body, Comments, Constants, Functions, Lines, Syntax};
 use super::{Constant, Fault, Function, Module};
 use crate::check::Check;
@@ -151,6 +152,10 @@ pub(super) fn read(text: &str, language: Language) -> Result<Module, Fault> {
         fixed(&mut lines, STRIBECK)?;
     }
 
+    if has_payload(&constants) {
+        fixed(&mut lines, C_PAYLOAD)?;
+    }
+
     let syntax = Syntax {
         index: ("[", "]"),
         first: 0,
@@ -192,11 +197,19 @@ fn constants(
     let order = ["NAME", "JOINT_IS_REVOLUTE", "", "DOF", "PARAMETERS", "TASK_ROWS", "TASK", TIPS, "JOINT_NAMES"]
         .into_iter()
         .chain(["POSITION_LIMITS", "VELOCITY_LIMITS", "EFFORT_LIMITS", "ACCELERATION_LIMITS", "JERK_LIMITS"])
-        .chain(["PARAMETER_NAMES", "NOMINAL_PARAMETERS"])
+        .chain(["PARAMETER_NAMES", "NOMINAL_PARAMETERS", "PARAMETER_INDEX"])
         .chain([NOMINAL_GRAVITY, "BASE_PARAMETERS", "BASE_PARAMETER_NAMES", "NOMINAL_BASE_PARAMETERS"]);
     in_order(order, |name| {
         if name.is_empty() {
             lines.expect(&format!("typedef {word} {}_real;", robot.name))?;
+            return Ok(None);
+        }
+        if name == "PARAMETER_INDEX" {
+            let names = names(&constants);
+            let places: Vec<String> = names.iter().map(|own| format!("{}_{name}_{own}", robot.upper)).collect();
+            if !places.is_empty() {
+                lines.expect(&format!("enum {{{}}};", places.join(", ")))?;
+            }
             return Ok(None);
         }
         let begin = format!("#define {}_{name} ", robot.upper);

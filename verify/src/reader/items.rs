@@ -3,8 +3,9 @@
 
 use std::collections::BTreeMap;
 
-use super::constant::integer;
+use super::constant::{integer, Constant};
 use super::lexer::{Fault, Kind, Lexer, Token};
+use super::parameters::{has_payload, RUST_INDEX, RUST_PAYLOAD};
 use super::parser::Parser;
 use super::sines::{self, Private};
 use crate::check::Check;
@@ -46,6 +47,10 @@ const CONSTANTS: [(&str, &str); 18] = [
 const STRUCT: &str = "#[allow(dead_code)]\n#[derive(Clone, Copy, Debug, PartialEq)]\npub struct EquationsOfMotion {";
 const FIELDS: [&str; 3] = ["pub inertia: [[Real; DOF]; DOF],", "pub coriolis: [[Real; DOF]; DOF],", "pub gravity: [Real; DOF],"];
 
+/// The functions over parameters that are the same in all modules.
+const INDEX: &str = "parameter_index";
+const PAYLOAD: &str = "payload_parameters";
+
 /// A public function.
 #[derive(Clone, Debug)]
 pub(super) struct Public<'a> {
@@ -82,6 +87,8 @@ pub(super) struct Items<'a> {
     /// The position of the struct's documentation.
     pub(super) structure: Option<Parser<'a>>,
     pub(super) public: Vec<Public<'a>>,
+    /// The functions over parameters that are the same in all modules, by name.
+    of_parameters: BTreeMap<&'static str, usize>,
     /// The bodies of the functions that write into memory of the caller, by the names of the functions that return the same result.
     pub(super) written: BTreeMap<&'a str, Parser<'a>>,
     pub(super) parts: BTreeMap<&'a str, Part<'a>>,
@@ -134,10 +141,21 @@ impl<'a> Items<'a> {
         Ok(items)
     }
 
-    /// The struct and the constants of base parameters occur exactly with the functions that need them.
-    pub(super) fn check_companions(&self) -> Result<(), Fault> {
+    /// The struct and the constants of base parameters occur exactly with the functions that need them, and functions over parameters
+    /// exactly with these.
+    pub(super) fn check_companions(&self, constants: &BTreeMap<String, Constant>) -> Result<(), Fault> {
         if !Check::Companions.is_made() {
             return Ok(());
+        }
+        let parameters = constants.get("PARAMETERS").is_some_and(|count| *count != Constant::Integer(0));
+        for (name, wanted) in [(INDEX, parameters), (PAYLOAD, has_payload(constants))] {
+            match self.of_parameters.get(name) {
+                Some(&line) if !wanted => {
+                    return Err(Fault { line, reason: format!("`{name}` of parameters that the module does not have") });
+                }
+                None if wanted => return Err(Fault { line: 1, reason: format!("the module does not have `{name}`") }),
+                _ => {}
+            }
         }
         let has = |name: &str| self.public.iter().any(|function| function.name == name);
         if self.structure.is_some() != (has("equations_of_motion") || has("equations_of_motion_with")) {
@@ -183,9 +201,11 @@ impl<'a> Items<'a> {
         let head = Head { beginning, keyword, name, documentation };
         match (public, keyword.text) {
             (true, "type") => self.scalar(parser),
+            (true, "const") if name.is("fn") => self.of_parameters(parser, &head, INDEX, RUST_INDEX),
             (true, "const") => self.constant(parser, head),
             (true, "struct") => self.structure(parser, &head),
             (_, "fn") if writes => self.written(parser, &head),
+            (true, "fn") if name.is(PAYLOAD) => self.of_parameters(parser, &head, PAYLOAD, RUST_PAYLOAD),
             (true, "fn") => self.function(parser, head),
             (false, "fn") if !is_private => {
                 parser.expect(&format!("{ALL_LINTS} #[inline(never)] fn"))?;
@@ -251,6 +271,15 @@ impl<'a> Items<'a> {
         parser.expect("}")?;
         match self.structure.replace(head.beginning) {
             Some(_) if Check::Once.is_made() => Err(head.name.fault("the struct stands twice")),
+            _ => Ok(()),
+        }
+    }
+
+    /// A function over parameters, which has the same text in all modules.
+    fn of_parameters(&mut self, parser: &mut Parser<'a>, head: &Head<'a>, name: &'static str, text: &str) -> Result<(), Fault> {
+        parser.expect(text)?;
+        match self.of_parameters.insert(name, head.name.line) {
+            Some(_) if Check::Once.is_made() => Err(head.name.fault(format!("function `{name}` stands twice"))),
             _ => Ok(()),
         }
     }

@@ -13,6 +13,7 @@ use std::collections::BTreeMap;
 
 use armgen_description::language::Language;
 
+use super::parameters::{has_payload, names, JAVASCRIPT_INDEX, JAVASCRIPT_PAYLOAD};
 use super::plain::{
     camel, in_order, is_of_some_arms, names_of, promised, sizes, Body, Comments, Constants, Functions, Lines, Parts, Syntax,
     CONSTANTS,
@@ -56,6 +57,9 @@ pub(super) fn read(text: &str) -> Result<Module, Fault> {
     })?;
     let constants: BTreeMap<String, Constant> = read.into_iter().collect();
     let sizes = sizes(&constants)?;
+    if !names(&constants).is_empty() {
+        lines.expect_all(JAVASCRIPT_INDEX, COMMENTS)?;
+    }
     lines.expect_all(CHECK, COMMENTS)?;
     let begins = |lines: &Lines<'_>, block: &str, skip: usize| {
         let block = Lines::new(block, COMMENTS)?;
@@ -76,6 +80,9 @@ pub(super) fn read(text: &str) -> Result<Module, Fault> {
     let stribeck = begins(&lines, STRIBECK, 0)?;
     if stribeck {
         lines.expect_all(STRIBECK, COMMENTS)?;
+    }
+    if has_payload(&constants) {
+        lines.expect_all(JAVASCRIPT_PAYLOAD, COMMENTS)?;
     }
     let syntax = Syntax {
         index: ("[", "]"),

@@ -16,6 +16,7 @@ use std::collections::BTreeMap;
 
 use armgen_description::language::Language;
 
+use super::parameters::{has_payload, names, MATLAB_PAYLOAD};
 use super::plain::{
     camel, in_order, is_of_some_arms, names_of, promised, sizes, Body, Comments, Constants, Entry, Lines, Parts, Syntax,
     CONSTANTS,
@@ -32,6 +33,9 @@ const SIGN: &str = include_str!("matlab/sign.m");
 const STRIBECK: &str = include_str!("matlab/stribeck.m");
 const STD: &str = include_str!("matlab/std.m");
 const FAST: &str = include_str!("matlab/sines.m");
+
+/// The file with the parameters of a payload.
+const PAYLOAD: &str = "payloadParameters.m";
 
 /// Prefix of the line before each file; the file name follows.
 pub(super) const FILE: &str = "%%% ";
@@ -134,7 +138,15 @@ pub(super) fn read(text: &str) -> Result<Module, Fault> {
     };
     let mut reader = Reader { syntax: &syntax, sizes, steps: 0, trig: None };
     let mut functions: Vec<(String, Result<Function, String>)> = Vec::new();
-    for file in files.iter().filter(|file| !["Contents.m", "model.m"].contains(&file.name)) {
+    if has_payload(&constants) {
+        let mut lines = named(PAYLOAD)?.lines()?;
+        lines.expect_all(MATLAB_PAYLOAD, COMMENTS)?;
+        if !lines.ended() {
+            return Err(lines.fault(format!("{} behind the end of the function", lines.shown())));
+        }
+    }
+    let others = if has_payload(&constants) { &["Contents.m", "model.m", PAYLOAD][..] } else { &["Contents.m", "model.m"] };
+    for file in files.iter().filter(|file| !others.contains(&file.name)) {
         let (name, function) = reader.file(file)?;
         functions.push((name, Ok(function)));
     }
@@ -182,6 +194,10 @@ fn constants(lines: &mut Lines<'_>) -> Result<BTreeMap<String, Constant>, Fault>
         }))
     })?;
     let constants = read.into_iter().collect();
+    let places: Vec<String> = names(&constants).into_iter().zip(1..).map(|(name, place)| format!("'{name}', {place}")).collect();
+    if !places.is_empty() {
+        lines.expect(&format!("    m.parameterIndex = struct({});", places.join(", ")))?;
+    }
     lines.expect("end")?;
     match lines.ended() {
         true => Ok(constants),

@@ -14,6 +14,7 @@ use std::collections::BTreeMap;
 
 use armgen_description::language::Language;
 
+use super::parameters::{has_payload, names, PYTHON_INDEX, PYTHON_PAYLOAD};
 use super::plain::{
     in_order, is_of_some_arms, names_of, promised, sizes, Body, Comments, Constants, Functions, Lines, Parts, Syntax, CONSTANTS,
 };
@@ -91,6 +92,10 @@ pub(super) fn read(text: &str) -> Result<Module, Fault> {
     let order: Vec<String> = read.iter().map(|(name, _)| name.clone()).collect();
     let constants: BTreeMap<String, Constant> = read.into_iter().collect();
     let sizes = sizes(&constants)?;
+    let indexed = !names(&constants).is_empty();
+    if indexed {
+        lines.expect_all(PYTHON_INDEX, COMMENTS)?;
+    }
     lines.at += 1;
     lines.expect_all(ARRAYS, COMMENTS)?;
     let mut trig = None;
@@ -111,6 +116,10 @@ pub(super) fn read(text: &str) -> Result<Module, Fault> {
     if stribeck {
         lines.expect_all(STRIBECK, COMMENTS)?;
     }
+    let loaded = has_payload(&constants);
+    if loaded {
+        lines.expect_all(PYTHON_PAYLOAD, COMMENTS)?;
+    }
     let syntax = Syntax {
         index: ("[", "]"),
         first: 0,
@@ -127,7 +136,9 @@ pub(super) fn read(text: &str) -> Result<Module, Fault> {
         Reader { syntax: &syntax, real, sizes, parts: Parts::default(), structures: Vec::new(), steps: 0, asks: [false; 3] };
     let functions = reader.all(&mut lines, "", [trig.is_some(), sign, stribeck])?;
     let named = constants.len() + 1;
-    let mut wanted: Vec<String> = order.into_iter().chain(["DTYPE".into(), "by_joint".into()]).collect();
+    let mut wanted: Vec<String> = order.into_iter().chain(indexed.then(|| "PARAMETER_INDEX".into())).collect();
+    wanted.extend(["DTYPE".into(), "by_joint".into()]);
+    wanted.extend(loaded.then(|| "payload_parameters".into()));
     wanted.extend(reader.structures.iter().cloned());
     wanted.extend(functions.iter().map(|(name, _)| name.clone()));
     if public != wanted {

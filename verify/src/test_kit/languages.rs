@@ -8,14 +8,14 @@ use super::{list, Kit, Value};
 use crate::contract::Length;
 use crate::enclosure::Float;
 use crate::float::Arguments;
-use crate::marked::{marked, LOAD};
+use crate::marked::{marked, LOAD, PAYLOAD};
 use crate::program::Argument;
 use crate::reader::{camel, in_the_name_of};
 
 /// The template of a language, after its line BEGIN; `sign` begins a comment.
 fn template(text: &'static str, sign: &str, kit: &Kit) -> String {
     let template = text.split_once("BEGIN").and_then(|(_, rest)| rest.split_once('\n')).map_or("", |(_, rest)| rest);
-    let template = marked(template, sign, &[(LOAD, kit.loaded)]);
+    let template = marked(template, sign, &[(LOAD, kit.loaded), (PAYLOAD, kit.carries)]);
     match sign {
         "//" => kit.with_gravity(template, &|name| format!("robot.{}(", camel(name)), "[1.5, -2.25, 9.5]"),
         "#" => kit.with_gravity(template, &|name| format!("robot.{name}("), "np.array([1.5, -2.25, 9.5])"),

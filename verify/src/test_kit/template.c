@@ -176,10 +176,20 @@ static void at(const vector q, const vector dq, const vector ddq, const vector t
     }
 }
 
+static void payload(void) /* with a payload */
+{ /* with a payload */
+    static const robot_real com[3] = {1, 2, 3}, inertia[3][3] = {{10, -1, -2}, {-1, 20, -3}, {-2, -3, 30}}; /* with a payload */
+    static const robot_real expected[10] = {2, 2, 4, 6, 36, -5, 40, -8, -15, 40}; /* with a payload */
+    robot_real found[10]; /* with a payload */
+    robot_payload_parameters(2, com, inertia, found); /* with a payload */
+    agree("payload_parameters, by Steiner", 10, found, expected, 0); /* with a payload */
+} /* with a payload */
+ /* with a payload */
 int main(void)
 {
     int k;
     values();
+    payload(); /* with a payload */
     for (k = 0; k < 20; ++k) {
         vector q, dq, ddq, tau;
         draw(3, q);

@@ -6,6 +6,8 @@
     torquesAreThoseOfTheMatricesAndOfTheRegressor();
     functionsAtRunTimeParametersAreThePlainOnesAtTheNominalParameters();
     gravityIsTheSlopeOfThePotentialEnergy();
+    parametersHaveTheirPlaces();
+    aPayloadHasItsParameters(); % with a payload
     fprintf('all tests passed\n');
 end
 
@@ -138,3 +140,16 @@ function gravityIsTheSlopeOfThePotentialEnergy()
         assert(max(abs(slope - g(k, :))) <= differences() * size_, 'gravity is the slope of the potential energy');
     end
 end
+
+function parametersHaveTheirPlaces()
+    m = robot.model();
+    for k = 1:m.parameters
+        assert(m.parameterIndex.(m.parameterNames{k}) == k, 'a parameter has its place');
+    end
+end
+ % with a payload
+function aPayloadHasItsParameters() % with a payload
+% Steiner: 2 kg at (1, 2, 3), about the origin. % with a payload
+    found = robot.payloadParameters(2, [1; 2; 3], [10, -1, -2; -1, 20, -3; -2, -3, 30]); % with a payload
+    assert(isequal(found, [2; 2; 4; 6; 36; -5; 40; -8; -15; 40]), 'a payload has its parameters'); % with a payload
+end % with a payload

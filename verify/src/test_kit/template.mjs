@@ -116,3 +116,12 @@ test("gravity is the slope of the potential energy", () => {
         });
     }
 });
+
+test("parameters have their places", () => {
+    assert.deepEqual(robot.PARAMETER_NAMES.map((name) => robot.PARAMETER_INDEX[name]), [...NOMINAL_PARAMETERS.keys()]);
+});
+ // with a payload
+test("a payload has its parameters", () => { // with a payload
+    const inertia = [[10, -1, -2], [-1, 20, -3], [-2, -3, 30]]; // Steiner: 2 kg at (1, 2, 3), about the origin. // with a payload
+    assert.deepEqual(robot.payloadParameters(2, [1, 2, 3], inertia), [2, 2, 4, 6, 36, -5, 40, -8, -15, 40]); // with a payload
+}); // with a payload

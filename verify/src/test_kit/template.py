@@ -106,6 +106,16 @@ def test_gravity_is_the_slope_of_the_potential_energy():
         assert np.max(np.abs(slope - g[..., k])) <= DIFFERENCES * size, f"dU/dq{k + 1}"
 
 
+def test_parameters_have_their_places():
+    assert [robot.PARAMETER_INDEX[name] for name in robot.PARAMETER_NAMES] == list(range(robot.PARAMETERS))
+
+
+def test_a_payload_has_its_parameters(): # with a payload
+    """Steiner: 2 kg at (1, 2, 3), about the origin.""" # with a payload
+    inertia = [[10, -1, -2], [-1, 20, -3], [-2, -3, 30]] # with a payload
+    assert robot.payload_parameters(2, [1, 2, 3], inertia) == (2, 2, 4, 6, 36, -5, 40, -8, -15, 40) # with a payload
+ # with a payload
+ # with a payload
 if __name__ == "__main__":
     for name, run in list(globals().items()):
         if name.startswith("test_"):

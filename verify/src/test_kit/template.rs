@@ -227,3 +227,18 @@ fn the_jacobian_is_the_slope_of_the_end_effector() {
         agree("geometric_jacobian_dot", &geometric_jacobian_dot(&s.q, &s.dq).flat(), &slope, DIFFERENCES * scale(&j.flat()));
     }
 }
+
+#[test]
+fn parameters_have_their_places() {
+    let places = PARAMETER_NAMES.map(parameter_index);
+    assert_eq!(places, core::array::from_fn(Some));
+    assert_eq!(parameter_index(""), None);
+}
+ // with a payload
+/// Steiner: 2 kg at (1, 2, 3), about the origin. // with a payload
+#[test] // with a payload
+fn a_payload_has_its_parameters() { // with a payload
+    let inertia = [[10.0, -1.0, -2.0], [-1.0, 20.0, -3.0], [-2.0, -3.0, 30.0]]; // with a payload
+    let found = payload_parameters(2.0, &[1.0, 2.0, 3.0], &inertia); // with a payload
+    assert_eq!(found, [2.0, 2.0, 4.0, 6.0, 36.0, -5.0, 40.0, -8.0, -15.0, 40.0]); // with a payload
+} // with a payload

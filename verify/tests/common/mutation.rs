@@ -187,9 +187,12 @@ fn entries(function: &syn::ItemFn) -> Vec<Expr> {
     found
 }
 
-/// Whether a function belongs to the module's purpose: public, or the writer of a public function's result.
+/// Whether a function belongs to the module's purpose: public, or the writer of a public function's result. Functions over parameters are
+/// compared word for word.
 fn is_of_the_module(function: &syn::ItemFn) -> bool {
-    matches!(function.vis, syn::Visibility::Public(_)) || function.sig.ident.to_string().ends_with("_into")
+    let name = function.sig.ident.to_string();
+    let public = matches!(function.vis, syn::Visibility::Public(_)) && !name.contains("parameter");
+    public || name.ends_with("_into")
 }
 
 /// A module that can be changed at its places.

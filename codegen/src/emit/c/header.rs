@@ -5,6 +5,7 @@ use std::fmt::Write;
 use super::{prefix, returns_a_number};
 use crate::catalogue::{Absent, Length};
 use crate::emit::documentation::{self, Block, Described, DescribedParameters, Link};
+use crate::emit::parameters::INDEX;
 use crate::emit::plain::of_robot;
 use crate::emit::{head, Origin};
 use crate::exact::Number;
@@ -141,6 +142,9 @@ pub(super) fn macros(module: &Module) -> String {
         let _ = writeln!(text, "#define {upper}_NOMINAL_PARAMETERS {}", braces(nominal));
         text += "\n";
         text += &parameters_comment(&described);
+        let places: Vec<String> =
+            module.parameters.iter().map(|parameter| format!("{upper}_PARAMETER_INDEX_{}", parameter.name)).collect();
+        let _ = writeln!(text, "\n/* {INDEX} */\nenum {};", braces(places));
     }
     if module.gravity_is_argument {
         let nominal = module.gravity.iter().map(|component| constant(component, module.scalar)).collect();

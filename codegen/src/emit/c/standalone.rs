@@ -5,9 +5,10 @@
 
 use std::fmt::Write;
 
-use super::header::{function_comment, macros, macros_of, opening, signature, POINTERS};
+use super::header::{comment, function_comment, macros, macros_of, opening, signature, POINTERS};
 use super::syntax::{most_lanes, C};
 use super::{batch, kernels, prefix, returns_a_number};
+use crate::emit::parameters::{has_payload, payload_blocks, C_PAYLOAD};
 use crate::emit::plain::{
     asks_for_exponentials, asks_for_signs, described, expression, of_robot, places, reads_an_argument, waves,
 };
@@ -59,6 +60,11 @@ pub(super) fn print(module: &Module, language: Language, origin: &Origin, notes:
     }
     if asks_for_exponentials(module) {
         text += &c.private(STRIBECK);
+        text += "\n";
+    }
+    if has_payload(module) {
+        text += &comment(&payload_blocks(), &|_| String::new());
+        text += &of_robot(C_PAYLOAD, &c.name, &c.upper);
         text += "\n";
     }
     text += POINTERS.trim_start();

@@ -20,6 +20,8 @@ const STRONGEST: f64 = 300.0;
 const FADED_BY: [f64; 2] = [10.0, 1.0];
 /// rad/s: a whole multiple of five from here on is a number of degrees per second.
 const ROUND_RATE: f64 = 30.0;
+/// Limits of acceleration and jerk beyond are in another unit: rad/s² and m/s², rad/s³ and m/s³.
+const FASTEST_CHANGE: [[f64; 2]; 2] = [[500.0, 200.0], [1e6, 1e5]];
 /// A joint this many times as fast as every other has a rate in another unit.
 const OUTLYING_RATE: f64 = 8.0;
 
@@ -306,6 +308,32 @@ pub(super) fn check_velocity(joint: &JointDescription, called: &str, context: &m
             format!("the velocity limit of joint {called} is {} m/s: no joint of an arm slides as fast", short(velocity));
         let help = in_text("rates are in m/s", "mm/s", written_as(expression, 1000, context));
         context.report(Code::ImplausibleVelocity, span, message, "in mm/s?", help);
+    }
+}
+
+pub(super) fn check_acceleration(joint: &JointDescription, called: &str, context: &mut Context<'_>) {
+    let limits = [("acceleration", "²", &joint.limits.acceleration), ("jerk", "³", &joint.limits.jerk)];
+    for ((what, power, limit), fastest) in limits.into_iter().zip(FASTEST_CHANGE) {
+        let (Some(expression), value) = (limit, number(limit, context)) else { continue };
+        let (unit, fastest) = if turns(joint) { ("rad", fastest[0]) } else { ("m", fastest[1]) };
+        if value <= fastest {
+            continue;
+        }
+        let span = written(expression, context);
+        let message =
+            format!("the {what} limit of joint {called} is {} {unit}/s{power}: no joint of an arm has as much", short(value));
+        let text = context.source.slice(span).to_owned();
+        let (help, label) = match turns(joint) {
+            true => (
+                format!(
+                    "it is in rad/s{power}; if this is in degrees, write `deg({text})`, which is {}",
+                    short(value.to_radians())
+                ),
+                "in degrees?",
+            ),
+            false => (in_text(&format!("it is in m/s{power}"), "mm", written_as(expression, 1000, context)), "in mm?"),
+        };
+        context.report(Code::ImplausibleVelocity, span, message, label, help);
     }
 }
 
