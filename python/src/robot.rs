@@ -92,7 +92,8 @@ impl Robot {
 
     /// The lower and the upper end of a joint's range, infinite where there is none.
     pub(crate) fn position_limits(&self, joint: usize) -> [f64; 2] {
-        let limits = self.model.manipulator.joints[joint].limits.position.as_ref();
+        let coordinates = self.model.manipulator.coordinates();
+        let limits = coordinates[joint].limits.position.as_ref();
         limits.map_or([f64::NEG_INFINITY, f64::INFINITY], |limits| limits.each_ref().map(Number::to_f64))
     }
 
@@ -125,12 +126,13 @@ impl Arm {
         let facts = PyDict::new(py);
         facts.set_item("name", &arm.name)?;
         facts.set_item("dof", arm.dof())?;
-        facts.set_item("joint_names", PyTuple::new(py, joints.iter().map(|joint| &joint.name))?)?;
-        facts.set_item("revolute", joints.iter().map(|joint| joint.kind == JointKind::Revolute).collect::<Vec<_>>())?;
-        let positions = (0..joints.len()).map(|joint| self.robot.position_limits(joint).to_vec());
+        let coordinates = arm.coordinates();
+        facts.set_item("joint_names", PyTuple::new(py, coordinates.iter().map(|of| &of.joint.name))?)?;
+        facts.set_item("revolute", coordinates.iter().map(|of| of.joint.kind == JointKind::Revolute).collect::<Vec<_>>())?;
+        let positions = (0..coordinates.len()).map(|joint| self.robot.position_limits(joint).to_vec());
         facts.set_item("position_limits", positions.collect::<Vec<_>>())?;
-        facts.set_item("velocity_limits", joints.iter().map(|joint| limit(&joint.limits.velocity)).collect::<Vec<_>>())?;
-        facts.set_item("effort_limits", joints.iter().map(|joint| limit(&joint.limits.effort)).collect::<Vec<_>>())?;
+        facts.set_item("velocity_limits", coordinates.iter().map(|of| limit(&of.limits.velocity)).collect::<Vec<_>>())?;
+        facts.set_item("effort_limits", coordinates.iter().map(|of| limit(&of.limits.effort)).collect::<Vec<_>>())?;
         facts.set_item("task", PyTuple::new(py, arm.task.iter().map(|row| row.name()))?)?;
         facts.set_item("gravity_vector", arm.gravity.each_ref().map(number).to_vec())?;
         let rotors = joints.iter().filter_map(|joint| joint.motor.as_ref()).map(|motor| &motor.mass);
