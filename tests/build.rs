@@ -75,6 +75,8 @@ fn main() {
     Robot::new("data/mounted.yaml").generate();
     // An arm with several end effectors, for `tests/tips.rs`.
     Robot::new("data/trees/two_hands.yaml").generate();
+    // An arm with a finger that follows another one, for `tests/coupled.rs`.
+    Robot::new("data/trees/gripper_arm.yaml").generate();
     // With inverse kinematics, for `tests/postures.rs`.
     for (robot, scalar) in POSTURES {
         let stem = Path::new(robot).file_stem().expect("a file's name").to_string_lossy();

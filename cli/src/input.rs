@@ -102,6 +102,17 @@ pub(crate) fn package(folder: &Path) -> Result<Source, u8> {
     })
 }
 
+/// The exit code, after a message, where joints are coupled and a command is for arms in which each joint has a coordinate.
+pub(crate) fn without_coupling(source: &Source, manipulator: &Manipulator, command: &str) -> Result<(), u8> {
+    let Some(joint) = manipulator.coupled_joint() else { return Ok(()) };
+    let name = source.name();
+    terminal::error(&format!(
+        "{name}: joint `{}` is coupled with others, and `armgen {command}` does not take coupled joints",
+        joint.name
+    ));
+    Err(FAULTY)
+}
+
 /// How much of a valid file's warnings goes to standard error.
 #[derive(Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Warnings {

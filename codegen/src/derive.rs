@@ -5,6 +5,7 @@ pub mod arm;
 pub mod base;
 mod columns;
 pub mod constants;
+pub mod coupling;
 pub mod derivation;
 pub mod determinant;
 pub mod factors;

@@ -65,6 +65,7 @@ fn check(manipulator: &Manipulator, places: &Places, diagnostics: &mut Diagnosti
         let of_tip = if manipulator.tips.is_empty() { manipulator.clone() } else { manipulator.at(tip) };
         let arm = Arm::new(&mut pool, &of_tip, View::Nominal);
         let jacobian = kinematics::geometric_jacobian(&mut pool, &arm);
+        let jacobian = arm.project_columns(&mut pool, jacobian);
         if of_tip.task.iter().all(|row| jacobian[row.index()].iter().all(|&e| e == ExprId::ZERO)) {
             found.push(Some(immovable_task(&of_tip, place)));
         }
@@ -75,8 +76,12 @@ fn check(manipulator: &Manipulator, places: &Places, diagnostics: &mut Diagnosti
         return;
     }
     let b = inertia::inertia_matrix(&mut pool, &arm, &mut Plan::default());
-    let values = b.iter().map(|row| row.iter().map(|&e| pool.fingerprint(e)[0]).collect()).collect();
-    found.extend(zero_pivots(&field, values).into_iter().map(|joint| singular_inertia(manipulator, places, joint)));
+    let b = arm.project_matrix(&mut pool, b);
+    let (pool, b) = arm.in_coordinates(pool, b.concat());
+    let values = b.chunks(arm.coordinates()).map(|row| row.iter().map(|&e| pool.fingerprint(e)[0]).collect()).collect();
+    let coordinates = manipulator.coordinates();
+    let singular = zero_pivots(&field, values).into_iter().map(|a| singular_inertia(manipulator, places, coordinates[a].index));
+    found.extend(singular);
     found.into_iter().flatten().for_each(|diagnostic| diagnostics.push(diagnostic));
 }
 

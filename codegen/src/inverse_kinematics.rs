@@ -99,6 +99,9 @@ pub fn of(manipulator: &Manipulator) -> Result<InverseKinematics, String> {
                 .into(),
         );
     }
+    if manipulator.coupling.is_some() {
+        return Err("it is not solved for an arm with coupled joints: use its Jacobian, with damping".into());
+    }
     let chain = Chain::of(manipulator)?;
     let length = size(&chain);
     let given = manipulator.inverse_kinematics.given;

@@ -183,7 +183,7 @@ pub struct EndEffector {
     pub name: String,
     /// Rows of its task in its geometric Jacobian.
     pub task: Vec<usize>,
-    /// The joints that move it, by their indices, from the base on.
+    /// The coordinates that move it, by their indices, from the base on.
     pub coordinates: Vec<usize>,
 }
 
@@ -194,13 +194,26 @@ impl EndEffector {
     }
 }
 
+/// Joint variables as sums over coordinates: S q + c.
+#[derive(Clone, Debug)]
+pub struct Coupling {
+    /// Names of all joints.
+    pub names: Vec<String>,
+    /// S, a row for each joint.
+    pub factors: Vec<Vec<Number>>,
+    /// c.
+    pub offsets: Vec<Number>,
+}
+
 /// All that the emitted module holds.
 #[derive(Clone, Debug)]
 pub struct Module {
     /// Name of the robot.
     pub name: String,
-    /// Joints, base to tip.
+    /// Joints, base to tip; of a robot with coupled joints those with a coordinate.
     pub joints: Vec<Joint>,
+    /// The coupling of joints, if joints are coupled.
+    pub coupling: Option<Coupling>,
     /// Acceleration of free fall in the base frame, m/s².
     pub gravity: [Number; 3],
     /// Whether that is an argument of the functions which it enters, and `gravity` its nominal value.
@@ -257,6 +270,7 @@ impl Module {
     pub fn sizes(&self) -> Sizes {
         Sizes {
             dof: self.joints.len(),
+            joints: self.coupling.as_ref().map_or(self.joints.len(), |coupling| coupling.names.len()),
             parameters: self.parameters.len(),
             base_parameters: self.base_set.len(),
             task: self.task.len(),

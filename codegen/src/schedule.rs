@@ -15,7 +15,7 @@ use crate::manipulator;
 use crate::parallel::parallel_map;
 
 pub use crate::pass::{Pass, Passes};
-use crate::program::{Cost, EndEffector, Function, Joint, Module, Operand, Operation, Output, Step, Trig};
+use crate::program::{Cost, Coupling, EndEffector, Function, Joint, Module, Operand, Operation, Output, Step, Trig};
 use crate::ring::count::DIVISION_COST;
 use crate::ring::{ExprId, Node, Pool, Symbol};
 use crate::Model;
@@ -54,6 +54,7 @@ pub fn module(model: &Model, options: &Options) -> Module {
         match quantity.absence(model, with_parameters) {
             Some(_) if !quantity.documentation.said_missing && options.functions.is_all() => {}
             Some(reason) => absent.push(Absent { function: quantity.function_name(with_parameters), reason }),
+            None if model.manipulator.coupling.is_some() => wanted.push((quantity.of_coupled_joints(), with_parameters)),
             None => wanted.push((quantity, with_parameters)),
         }
     }
@@ -63,7 +64,8 @@ pub fn module(model: &Model, options: &Options) -> Module {
     let manipulator = &model.manipulator;
     Module {
         name: manipulator.name.clone(),
-        joints: manipulator.joints.iter().map(joint).collect(),
+        joints: manipulator.coordinates().into_iter().map(joint).collect(),
+        coupling: manipulator.coupling.as_ref().map(|coupling| coupled(manipulator, coupling)),
         gravity: manipulator.gravity.each_ref().map(|g| nominal(manipulator, g)),
         gravity_is_argument: manipulator.gravity_is_argument,
         has_springs: manipulator.has_springs(),
@@ -90,19 +92,32 @@ fn end_effector(manipulator: &manipulator::Manipulator, tip: &manipulator::Tip) 
     EndEffector {
         name: tip.name.clone(),
         task: tip.task.iter().map(|row| row.index()).collect(),
-        coordinates: manipulator.path_to(tip.joint.index()),
+        coordinates: manipulator.coordinates_of(tip.joint.index()),
     }
 }
 
-fn joint(joint: &manipulator::Joint) -> Joint {
+fn joint(manipulator::Coordinate { joint, limits, .. }: manipulator::Coordinate<'_>) -> Joint {
     Joint {
         name: joint.name.clone(),
         is_revolute: joint.kind == JointKind::Revolute,
-        position: joint.limits.position.clone().map_or([None, None], |limits| limits.map(Some)),
-        velocity: joint.limits.velocity.clone(),
-        effort: joint.limits.effort.clone(),
-        acceleration: joint.limits.acceleration.clone(),
-        jerk: joint.limits.jerk.clone(),
+        position: limits.position.clone().map_or([None, None], |limits| limits.map(Some)),
+        velocity: limits.velocity.clone(),
+        effort: limits.effort.clone(),
+        acceleration: limits.acceleration.clone(),
+        jerk: limits.jerk.clone(),
+    }
+}
+
+fn coupled(manipulator: &manipulator::Manipulator, coupling: &manipulator::Coupling) -> Coupling {
+    let row = |variable: &manipulator::JointVariable| {
+        let mut row = vec![Number::zero(); coupling.coordinates.len()];
+        variable.factors.iter().for_each(|(a, factor)| row[*a].clone_from(factor));
+        row
+    };
+    Coupling {
+        names: manipulator.joints.iter().map(|joint| joint.name.clone()).collect(),
+        factors: coupling.variables.iter().map(row).collect(),
+        offsets: coupling.variables.iter().map(|variable| variable.offset.clone()).collect(),
     }
 }
 
@@ -146,7 +161,9 @@ fn lower(model: &Model, quantity: &'static Quantity, with_parameters: bool, deri
     let mut function =
         Function { quantity, with_parameters, arguments, steps, outputs, method, stribeck: BTreeMap::new(), fuse: false };
     let velocity = |symbol| match symbol {
-        Symbol::Stribeck(i) => Some((i, model.manipulator.joints[usize::from(i)].stribeck.as_ref()?.velocity.clone())),
+        Symbol::Stribeck(i) => {
+            Some((i, model.manipulator.coordinates()[usize::from(i)].joint.stribeck.as_ref()?.velocity.clone()))
+        }
         _ => None,
     };
     function.stribeck = function.symbols().into_iter().filter_map(velocity).collect();

@@ -127,6 +127,12 @@ pub struct JointDescription {
     pub parent: Option<Spanned<String>>,
     /// The frame that its row starts from, in the link frame of the parent.
     pub mount: Option<PoseDescription>,
+    /// The joints that it follows without a coordinate of its own.
+    pub follows: Option<LeadersDescription>,
+    /// The joints whose variables are added to its own coordinate.
+    pub adds: Option<LeadersDescription>,
+    /// The constant that is added to these variables.
+    pub offset: Value,
     /// Length a, m.
     pub a: Value,
     /// Twist alpha, rad.
@@ -153,6 +159,15 @@ pub struct JointDescription {
     pub armature: Value,
     /// Where the joint begins: its first key.
     pub span: Span,
+}
+
+/// Joints whose variables another one depends on, in the order of the file.
+#[derive(Clone, Debug)]
+pub struct LeadersDescription {
+    /// Place of the key that holds them.
+    pub key: Span,
+    /// Each with its factor.
+    pub leaders: Vec<(Spanned<String>, Value)>,
 }
 
 /// Limits of a joint.

@@ -212,6 +212,22 @@ codes! {
         NameTaken Error "name-taken",
         /// A key of a single end effector beside `tips`.
         TipsBesideTool Error "tips-beside-tool",
+        /// `follows` or `adds` names no joint.
+        UnknownLeader Error "unknown-leader",
+        /// Joints that follow each other.
+        RingOfFollowers Error "ring-of-followers",
+        /// A factor of 0 in `follows` or `adds`.
+        ZeroFactor Error "zero-factor",
+        /// A joint that turns and follows others by no whole number.
+        FractionalFactor Error "fractional-factor",
+        /// `follows` and `adds` at one joint.
+        FollowsAndAdds Error "follows-and-adds",
+        /// `offset` beside neither `follows` nor `adds`.
+        OffsetWithoutLeader Error "offset-without-leader",
+        /// Friction that grows with the load of a coupled joint.
+        CoupledLoad Error "coupled-load",
+        /// Dry friction at the rate of a joint that is no coordinate's.
+        CoupledFriction Error "coupled-friction",
         /// A mass below 0.
         NegativeMass Error "negative-mass",
         /// An inertia tensor that is not positive semidefinite.
@@ -263,6 +279,8 @@ codes! {
         // Warnings.
         /// An arm with branches whose file names no end effector.
         OneTip Warning "one-tip",
+        /// An effort limit of a joint without a coordinate.
+        FollowerEffort Warning "follower-effort",
         /// Principal moments that no body has.
         TriangleInequality Warning "triangle-inequality",
         /// A tensor that no body has, taken as written since the file allows it.

@@ -119,6 +119,41 @@ pub struct Manipulator {
     /// The end effectors with names, in the order of the file; none where there is one end effector without a name.
     /// `tip`, `tool`, `task` and `inverse_kinematics` are then those of the first one, or of the one that [`Manipulator::at`] chose.
     pub tips: Vec<Tip>,
+    /// The coupling of joints; `None` where each joint has a coordinate of its own, which is its variable.
+    pub coupling: Option<Coupling>,
+}
+
+/// Joint variables as sums over coordinates: q = S p + c.
+#[derive(Clone, Debug)]
+pub struct Coupling {
+    /// The joints with a coordinate, by their indices, in the order of the file.
+    pub coordinates: Vec<usize>,
+    /// The limits of each coordinate: those of its joint and of joints that follow it alone.
+    pub limits: Vec<Limits>,
+    /// The variable of each joint.
+    pub variables: Vec<JointVariable>,
+}
+
+/// The variable of a joint as a sum over coordinates.
+#[derive(Clone, Debug)]
+pub struct JointVariable {
+    /// Coordinates with their factors, ascending; no factor is 0. Those of a joint that turns are whole, of coordinates that turn.
+    pub factors: Vec<(usize, Number)>,
+    /// The constant part.
+    pub offset: Number,
+    /// Sine and cosine of the constant part, of a joint that turns.
+    pub turn: Option<[Number; 2]>,
+}
+
+/// A coordinate of an arm.
+#[derive(Clone, Copy, Debug)]
+pub struct Coordinate<'a> {
+    /// The index of its joint.
+    pub index: usize,
+    /// Its joint, whose name it has.
+    pub joint: &'a Joint,
+    /// Its limits.
+    pub limits: &'a Limits,
 }
 
 /// A named quantity of the file.
@@ -391,9 +426,37 @@ impl Manipulator {
         self.parents().enumerate().any(|(i, parent)| parent != i.checked_sub(1))
     }
 
-    /// Number of joints.
+    /// Number of coordinates: of joints, but for those that follow others.
     pub fn dof(&self) -> usize {
-        self.joints.len()
+        self.coupling.as_ref().map_or(self.joints.len(), |coupling| coupling.coordinates.len())
+    }
+
+    /// The coordinates, in the order of the joints.
+    pub fn coordinates(&self) -> Vec<Coordinate<'_>> {
+        let of = |(index, limits)| Coordinate { index, joint: &self.joints[index], limits };
+        match &self.coupling {
+            Some(coupling) => coupling.coordinates.iter().copied().zip(&coupling.limits).map(of).collect(),
+            None => self.joints.iter().map(|joint| &joint.limits).enumerate().map(of).collect(),
+        }
+    }
+
+    /// The first joint whose variable is no coordinate of its own alone.
+    pub fn coupled_joint(&self) -> Option<&Joint> {
+        let variables = self.coupling.iter().flat_map(|coupling| &coupling.variables);
+        let is_plain = |variable: &JointVariable| matches!(variable.factors.as_slice(), [(_, factor)] if factor.is_one());
+        let coupled = |(i, variable): (usize, &JointVariable)| {
+            let has_coordinate = self.coupling.as_ref().is_some_and(|coupling| coupling.coordinates.contains(&i));
+            !(has_coordinate && is_plain(variable) && variable.offset.is_zero())
+        };
+        variables.enumerate().find(|&entry| coupled(entry)).map(|(i, _)| &self.joints[i])
+    }
+
+    /// The coordinates that move a link, by their indices, ascending.
+    pub fn coordinates_of(&self, link: usize) -> Vec<usize> {
+        let path = self.path_to(link);
+        let Some(coupling) = &self.coupling else { return path };
+        let moving = |a: &usize| path.iter().any(|&i| coupling.variables[i].factors.iter().any(|(of, _)| of == a));
+        (0..coupling.coordinates.len()).filter(moving).collect()
     }
 
     /// Rows of the geometric Jacobian that make up the task.

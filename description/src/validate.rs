@@ -10,6 +10,7 @@
 //! frames.rs      where joint frames lie
 //! bodies.rs      mass, centre of mass, inertia: no impossible body
 //! parents.rs     the tree of links, and where rows start
+//! coupling.rs    joints that follow others
 //! joints.rs      limits, motor, friction
 //! choices.rs     end effectors, task, regressor
 //! places.rs      where things stand, for what is found out later
@@ -23,6 +24,7 @@
 mod allow;
 mod bodies;
 mod choices;
+mod coupling;
 mod evaluate;
 mod frames;
 mod geometry;
@@ -127,6 +129,7 @@ fn validate(
     let convention = description.convention.as_ref().map(|c| c.value);
     let gravity = description.gravity.as_ref().and_then(|g| context.polynomials(&g.value));
     let joints = joints(description, &mut context);
+    let coupling = coupling::resolve(description.joints.as_ref().map_or(&[][..], |joints| &joints.value), &mut context);
     let tool = geometry::pose(description.tool.as_ref(), "the tool", &mut context);
     let payload = description.payload.as_ref().map(|p| bodies::part(p, Some(Pose::identity()), "the payload", &mut context));
     let tips = choices::tips(description, &mut context);
@@ -146,7 +149,7 @@ fn validate(
     if context.diagnostics.has_errors() {
         return None;
     }
-    let (mut joints, tool, tip, tips) = (joints?, tool?, tip?, tips?);
+    let (mut joints, tool, tip, tips, coupling) = (joints?, tool?, tip?, tips?, coupling?);
     let parents: Vec<Option<usize>> = joints.iter().map(|joint| joint.parent.map(|parent| parent.index())).collect();
     let bare = [(tip.index(), description.tool.as_ref())];
     let named = description.tips.iter().flat_map(|described| tips.iter().zip(&described.value));
@@ -175,6 +178,7 @@ fn validate(
         regressor: regressor?,
         inverse_kinematics,
         tips,
+        coupling,
     };
     if !manipulator.tips.is_empty() {
         manipulator = manipulator.at(0);

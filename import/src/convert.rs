@@ -363,6 +363,12 @@ impl<'d> Converter<'d> {
             text.push(format!("    parent: {}", parent.map_or("base", |parent| &self.arm.joints[parent].name)));
         }
         text.extend(poses("    mount", &row.mount));
+        for (key, leaders) in [("follows", &joint.follows), ("adds", &joint.adds)] {
+            let Some(leaders) = leaders else { continue };
+            let all = leaders.leaders.iter().map(|(name, factor)| format!("{}: {}", name.value, self.value(factor)));
+            text.push(format!("    {key}: {{{}}}", all.collect::<Vec<_>>().join(", ")));
+        }
+        text.extend(joint.offset.as_ref().map(|offset| format!("    offset: {}", self.text(offset))));
         text.extend(row.keys.iter().map(|key| format!("    {key}")));
         let mut limits = Vec::new();
         limits.extend(joint.limits.position.as_ref().map(|limits| format!("position: {}", self.vector(&limits.value))));

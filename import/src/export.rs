@@ -76,6 +76,8 @@ pub(crate) struct Motion {
     pub(crate) jerk: Option<String>,
     pub(crate) viscous: Option<String>,
     pub(crate) coulomb: Option<String>,
+    /// Leader, factor and offset.
+    pub(crate) mimic: Option<[String; 3]>,
 }
 
 /// A mass distribution.
@@ -277,7 +279,14 @@ impl Writer<'_> {
             (false, Some(_)) => "revolute",
             (false, None) => "continuous",
         };
-        Motion { kind, axis, position, velocity, effort, acceleration, jerk, viscous, coulomb }
+        let mimic = joint.follows.as_ref().and_then(|follows| match follows.leaders.as_slice() {
+            [(leader, factor)] => {
+                let offset = joint.offset.as_ref().map_or_else(|| "0".to_owned(), |offset| self.decimal(offset));
+                Some([leader.value.clone(), self.value(factor), offset])
+            }
+            _ => None,
+        });
+        Motion { kind, axis, position, velocity, effort, acceleration, jerk, viscous, coulomb, mimic }
     }
 
     /// Viscous friction of a joint's motor as the joint feels it: ratio² times that at the rotor.
@@ -450,6 +459,9 @@ impl Writer<'_> {
             tips,
             allow,
         } = description;
+        let several =
+            |joint: &JointDescription| joint.adds.is_some() || joint.follows.as_ref().is_some_and(|of| of.leaders.len() > 1);
+        let coupled = joints.iter().any(several);
         let asked = |target: &Option<Spanned<Target>>, given: &Option<Spanned<String>>| target.is_some() || given.is_some();
         let tips = || tips.iter().flat_map(|tips| &tips.value);
         let gravity = gravity.as_ref().map(|gravity| gravity.value.each_ref().map(|x| self.value(x)));
@@ -459,6 +471,10 @@ impl Writer<'_> {
         for (what, given) in [
             ("the payload", payload.is_some() || tips().any(|tip| tip.payload.is_some())),
             ("gravity as an argument, whose nominal value is taken", *gravity_is_argument),
+            (
+                "the coupling of joints with several others, and `adds`, which a URDF cannot hold: these joints move freely",
+                coupled,
+            ),
             ("`task`", task.is_some() || tips().any(|tip| tip.task.is_some())),
             ("`regressor`", regressor.as_ref().is_some_and(|r| !matches!(r.value, RegressorDescription::Standard))),
             (

@@ -26,8 +26,9 @@ mod words;
 
 pub use logs::{Figure, Log, Run, Verdict, SAMPLES};
 
+use armgen_codegen::codes;
 use armgen_codegen::description::{Convention, RobotDescription};
-use armgen_codegen::diagnostic::Diagnostics;
+use armgen_codegen::diagnostic::{Diagnostic, Diagnostics};
 use armgen_codegen::emit::{javascript, Notes, Origin};
 use armgen_codegen::manipulator::Manipulator;
 use armgen_codegen::program::{Module, Trig};
@@ -76,7 +77,7 @@ pub struct Misfit {
 /// A log has other joints than the arm.
 pub fn page(source: &Source, runs: &[Run]) -> Result<(Option<String>, Diagnostics), Misfit> {
     let (valid, mut diagnostics) = validate::read_for(source, Scalar::F64);
-    let Some((manipulator, places)) = valid else { return Ok((None, diagnostics)) };
+    let Some((manipulator, places)) = of_coordinates(valid, &mut diagnostics) else { return Ok((None, diagnostics)) };
     let joints: Vec<&str> = manipulator.joints.iter().map(|joint| joint.name.as_str()).collect();
     for run in runs {
         let fits = run.log.as_ref().map_or(Ok(()), |log| log.fits(&joints));
@@ -94,12 +95,37 @@ pub fn page(source: &Source, runs: &[Run]) -> Result<(Option<String>, Diagnostic
     Ok((Some(page), diagnostics))
 }
 
+codes! {
+    /// Kinds of faults of an arm that has no page.
+    pub enum Code {
+        /// Joints are coupled.
+        CoupledJoints Error "coupled-joints",
+    }
+}
+
+/// The arm, unless joints are coupled: the page has a slider for each joint.
+fn of_coordinates(valid: Option<(Manipulator, Places)>, diagnostics: &mut Diagnostics) -> Option<(Manipulator, Places)> {
+    let (manipulator, places) = valid?;
+    let Some(joint) = manipulator.coupled_joint() else { return Some((manipulator, places)) };
+    let place = manipulator.joints.iter().position(|other| other.name == joint.name).and_then(|i| places.joints.get(i));
+    let message = format!("joint `{}` is coupled with others, and the page does not show coupled joints", joint.name);
+    let help = "leave `follows`, `adds` and `offset` out in a copy of the file, to look at the arm with every joint free";
+    diagnostics.push(Diagnostic::new(
+        Code::CoupledJoints,
+        place.map_or(places.name, |place| place.name),
+        message,
+        "coupled",
+        help,
+    ));
+    None
+}
+
 /// The page in the first of two steps: everything but the equations and the table of costs, which take most of the time.
 /// Its script waits for a message from the window around it, what [`rest`] gives. `nonce` marks its script and its style for the
 /// policy of that window.
 pub fn picture(source: &Source, nonce: &str) -> (Option<String>, Diagnostics) {
     let (valid, mut diagnostics) = validate::read_for(source, Scalar::F64);
-    let Some((manipulator, places)) = valid else { return (None, diagnostics) };
+    let Some((manipulator, places)) = of_coordinates(valid, &mut diagnostics) else { return (None, diagnostics) };
     let model = Model::new(manipulator.with_one_end_effector());
     let functions = Selection::named(FUNCTIONS).expect("names of the catalogue");
     let Some(module) = derived(&model, &places, functions, &mut diagnostics) else { return (None, diagnostics) };

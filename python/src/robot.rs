@@ -92,7 +92,8 @@ impl Robot {
 
     /// The lower and the upper end of a joint's range, infinite where there is none.
     pub(crate) fn position_limits(&self, joint: usize) -> [f64; 2] {
-        let limits = self.model.manipulator.joints[joint].limits.position.as_ref();
+        let coordinates = self.model.manipulator.coordinates();
+        let limits = coordinates[joint].limits.position.as_ref();
         limits.map_or([f64::NEG_INFINITY, f64::INFINITY], |limits| limits.each_ref().map(Number::to_f64))
     }
 
@@ -125,11 +126,12 @@ impl Arm {
         let facts = PyDict::new(py);
         facts.set_item("name", &arm.name)?;
         facts.set_item("dof", arm.dof())?;
-        facts.set_item("joint_names", PyTuple::new(py, joints.iter().map(|joint| &joint.name))?)?;
-        facts.set_item("revolute", joints.iter().map(|joint| joint.kind == JointKind::Revolute).collect::<Vec<_>>())?;
-        let positions = (0..joints.len()).map(|joint| self.robot.position_limits(joint).to_vec());
+        let coordinates = arm.coordinates();
+        facts.set_item("joint_names", PyTuple::new(py, coordinates.iter().map(|of| &of.joint.name))?)?;
+        facts.set_item("revolute", coordinates.iter().map(|of| of.joint.kind == JointKind::Revolute).collect::<Vec<_>>())?;
+        let positions = (0..coordinates.len()).map(|joint| self.robot.position_limits(joint).to_vec());
         facts.set_item("position_limits", positions.collect::<Vec<_>>())?;
-        let limits = joints.iter().map(|joint| &joint.limits);
+        let limits = coordinates.iter().map(|of| &of.limits);
         facts.set_item("velocity_limits", limits.clone().map(|own| limit(&own.velocity)).collect::<Vec<_>>())?;
         facts.set_item("effort_limits", limits.clone().map(|own| limit(&own.effort)).collect::<Vec<_>>())?;
         facts.set_item("acceleration_limits", limits.clone().map(|own| limit(&own.acceleration)).collect::<Vec<_>>())?;

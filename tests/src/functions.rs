@@ -49,10 +49,15 @@ pub trait Functions {
 }
 
 /// Names of all functions that can be emitted, in the order of the module. Excluded are the `absent` functions, and
-/// `load_friction` where the description has no such friction.
+/// `load_friction` where the description has no such friction, `joint_variables` where it couples no joints.
 pub fn expected(absent: &[String], description: &str) -> Vec<String> {
     let loaded = [", load: ", "{load: "].iter().any(|key| description.contains(key));
-    let asked = catalogue::functions().filter(|(quantity, _)| loaded || quantity.name != "load_friction");
+    let coupled = [" follows: ", " adds: "].iter().any(|key| description.contains(key));
+    let asked = catalogue::functions().filter(|(quantity, _)| match quantity.name {
+        "load_friction" => loaded,
+        "joint_variables" => coupled,
+        _ => true,
+    });
     asked.map(|(quantity, with)| quantity.function_name(with)).filter(|name| !absent.contains(name)).collect()
 }
 

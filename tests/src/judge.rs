@@ -193,7 +193,7 @@ impl Case<'_> {
     /// All functions, plain or `_with`, for which a model has a formula, each part of a result to its own scale.
     fn expect_values(&self, with_parameters: bool, model: &Model, a: &Arguments) {
         let n = self.robot.dof();
-        let sizes = Sizes { dof: n, parameters: a.pi.len(), base_parameters: 0, task: 0 };
+        let sizes = Sizes { dof: n, joints: n, parameters: a.pi.len(), base_parameters: 0, task: 0 };
         for (quantity, _) in catalogue::functions().filter(|(_, with)| *with == with_parameters) {
             let function = quantity.function_name(with_parameters);
             let Some(expected) = model.value(&function, a).filter(|_| self.robot.has(&function)) else { continue };

@@ -4,6 +4,7 @@ mod bad_files;
 mod batches;
 mod c_face;
 mod carried_arms;
+mod coupled;
 mod embedding;
 mod emission;
 mod emitted;

@@ -58,6 +58,9 @@ fn of_arm(arm: &Manipulator) -> Value {
         "payload": (!loads.is_empty()).then(|| loads.iter().map(|load| number(&load.body.body.mass)).sum::<f64>()),
         "task": arm.task.iter().map(|row| row.name()).collect::<Vec<_>>(),
     });
+    if arm.coupling.is_some() {
+        object["coordinates"] = arm.coordinates().iter().map(|of| of.joint.name.clone()).collect();
+    }
     if !arm.tips.is_empty() {
         let tips = arm.tips.iter().map(|tip| {
             let task: Vec<&str> = tip.task.iter().map(|row| row.name()).collect();

@@ -36,7 +36,7 @@ pub fn items(model: &Model, quantities: &[String]) -> Result<Vec<Item>, String> 
     if quantities.is_empty() {
         return Ok(Item::all(tips));
     }
-    let dof = model.manipulator.dof();
+    let dof = model.manipulator.joints.len();
     let mut items = Vec::new();
     for name in quantities {
         let named = Item::named(name, dof, tips);

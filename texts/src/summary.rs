@@ -79,7 +79,11 @@ fn arm(source: &Source, description: &RobotDescription, manipulator: &Manipulato
         }
     };
     row("robot", manipulator.name.clone());
-    row("joints", manipulator.dof().to_string());
+    row("joints", manipulator.joints.len().to_string());
+    if manipulator.coupling.is_some() {
+        row("coordinates", manipulator.coordinates().iter().map(|of| of.joint.name.clone()).collect::<Vec<_>>().join(", "));
+        joints::couplings(manipulator).into_iter().for_each(|sentence| row("coupling", sentence));
+    }
     let convention = match description.convention.as_ref().map(|c| c.value) {
         Some(Convention::Urdf) => "urdf: origin, then the motion about or along axis",
         Some(Convention::Modified) => "modified Denavit-Hartenberg: Rx(alpha) Tx(a) Rz(theta) Tz(d)",
@@ -117,13 +121,12 @@ fn arm(source: &Source, description: &RobotDescription, manipulator: &Manipulato
     row("reach", reach::in_words(manipulator));
     for tip in &manipulator.tips {
         let joint = &manipulator.joints[tip.joint.index()].name;
-        let (moved, rows) = (manipulator.path_to(tip.joint.index()).len(), tip.task.iter().map(|row| row.name()));
+        let (moved, rows) = (manipulator.coordinates_of(tip.joint.index()).len(), tip.task.iter().map(|row| row.name()));
         let rows = rows.collect::<Vec<_>>().join(", ");
         row("end effector", format!("{} on {joint}, moved by {}; task {rows}", tip.name, counted(moved, "joint")));
     }
     let rows: Vec<&str> = manipulator.task.iter().map(|row| row.name()).collect();
-    let parents: Vec<Option<usize>> = manipulator.parents().collect();
-    let of_end_effector = std::iter::successors(Some(manipulator.tip.index()), |&joint| parents[joint]).count();
+    let of_end_effector = manipulator.coordinates_of(manipulator.tip.index()).len();
     let (m, n) = (rows.len(), of_end_effector);
     let against = match m.cmp(&n) {
         std::cmp::Ordering::Equal => "as many rows as joints".to_string(),

@@ -1,6 +1,6 @@
 //! Illustrates the error of a wrong function: its value and the value of the equations in floats at a state. This proves nothing.
 
-use armgen_description::manipulator::{Joint, Manipulator};
+use armgen_description::manipulator::{Coordinate, Manipulator};
 
 use crate::arithmetic::Arithmetic;
 use crate::base;
@@ -72,10 +72,10 @@ pub(crate) fn say(functions: &mut [FunctionReport], module: &Module, checker: &C
 fn state(arguments: &Arguments<f64>, manipulator: &Manipulator) -> State<f64> {
     let sign = |rate: &f64| if *rate == 0.0 { 0.0 } else { rate.signum() };
     let angles = arguments.q.iter().map(|q| q.sin_cos()).collect();
-    let fading = |(rate, joint): (&f64, &Joint)| {
-        joint.stribeck.as_ref().map_or(0.0, |stribeck| libm::exp(-rate.abs() / stribeck.velocity.to_f64()))
+    let fading = |(rate, of): (&f64, Coordinate<'_>)| {
+        of.joint.stribeck.as_ref().map_or(0.0, |stribeck| libm::exp(-rate.abs() / stribeck.velocity.to_f64()))
     };
-    let stribeck = arguments.dq.iter().zip(&manipulator.joints).map(fading).collect();
+    let stribeck = arguments.dq.iter().zip(manipulator.coordinates()).map(fading).collect();
     State { stribeck, ..State::of(arguments.clone(), angles, arguments.dq.iter().map(sign).collect(), [0.0, 1.0]) }
 }
 

@@ -94,7 +94,8 @@ fn sample<E: Element>(arm: &Arm<E>, state: State<E>, named: &[(Standard, bool)])
     let in_joint_frames = described.clone().with_links_in_joint_frames();
     // Rotors and the load keep their frames of the description.
     let (whole, links) = (ArmMotion::new(arm, &described, motion()), ArmMotion::new(arm, &in_joint_frames, motion()));
-    let nothing = || vec![arm.zero.clone(); arm.dof()];
+    let nothing = || vec![arm.zero.clone(); arm.joints.len()];
+    let at_joints = arm.state_of_joints(&state);
     let unit = |k: usize| -> Vec<E> { (0..10).map(|i| if i == k { arm.one.clone() } else { arm.zero.clone() }).collect() };
     let column = |parameter: Standard| {
         let mut column = nothing();
@@ -105,16 +106,16 @@ fn sample<E: Element>(arm: &Arm<E>, state: State<E>, named: &[(Standard, bool)])
             Standard::Armature(i) => whole.add_armature(i, &arm.one, &mut column),
             Standard::RotorViscous(i) => {
                 let square = arm.joints[i].motor.as_ref().map_or(arm.zero.clone(), |m| m.ratio.times(&m.ratio));
-                column[i] = square.times(&state.dq[i]);
+                column[i] = square.times(&at_joints.dq[i]);
             }
-            Standard::Viscous(i) => column[i].clone_from(&state.dq[i]),
-            Standard::Coulomb(i) => column[i].clone_from(&state.signs[i]),
-            Standard::Stribeck(i) => column[i] = state.signs[i].times(&state.stribeck[i]),
+            Standard::Viscous(i) => column[i].clone_from(&at_joints.dq[i]),
+            Standard::Coulomb(i) => column[i].clone_from(&at_joints.signs[i]),
+            Standard::Stribeck(i) => column[i] = at_joints.signs[i].times(&at_joints.stribeck[i]),
             Standard::Offset(i) => column[i].clone_from(&arm.one),
-            Standard::Cubic(i) => column[i] = state.dq[i].times(&state.dq[i]).times(&state.dq[i]),
-            Standard::Stiffness(i) => column[i] = state.q[i].minus(&arm.joints[i].rest),
+            Standard::Cubic(i) => column[i] = at_joints.dq[i].times(&at_joints.dq[i]).times(&at_joints.dq[i]),
+            Standard::Stiffness(i) => column[i] = at_joints.q[i].minus(&arm.joints[i].rest),
         }
-        column
+        arm.of_coordinates(column)
     };
     let mut columns = BTreeMap::new();
     for parameter in named.iter().flat_map(|(parameter, _)| kind(*parameter)) {
@@ -186,7 +187,7 @@ impl<E: Element> Samples<E> {
         let under = |state: State<E>| sample(&arm.clone().under(&state.g0), state, named);
         let mut samples = vec![under(reference.state.clone())];
         for _ in 0..more {
-            let fades = manipulator.joints.iter().map(|joint| joint.stribeck.is_some());
+            let fades = manipulator.coordinates().into_iter().map(|of| of.joint.stribeck.is_some());
             let state = State::draw(arithmetic, arm.dof()).with_stribeck(arithmetic, fades);
             samples.push(under(state.with_gravity(arithmetic, manipulator.gravity_is_argument)));
         }

@@ -17,7 +17,7 @@
 use std::collections::BTreeMap;
 
 use armgen_description::kinds::{JointKind, ParameterId};
-use armgen_description::manipulator::Manipulator;
+use armgen_description::manipulator::{Coordinate, Manipulator};
 use armgen_description::parallel::parallel_map;
 
 use crate::arithmetic::wide::Wide;
@@ -71,21 +71,21 @@ impl Bound {
 pub fn domain(manipulator: &Manipulator, nominal: &[f64]) -> Domain {
     let float = |n: &armgen_description::exact::Number| Float::F64.nearest(&formula(n));
     let mut domain = Domain::default();
-    for joint in &manipulator.joints {
+    for Coordinate { joint, limits: given, .. } in manipulator.coordinates() {
         let revolute = joint.kind == JointKind::Revolute;
         let free = if revolute { std::f64::consts::PI } else { 1.0 };
-        let limits = joint.limits.position.as_ref().and_then(|[low, high]| Some((float(low)?, float(high)?)));
+        let limits = given.position.as_ref().and_then(|[low, high]| Some((float(low)?, float(high)?)));
         domain.q.push(limits.unwrap_or((-free, free)));
         let symmetric = |limit: Option<f64>, otherwise: f64| {
             let size = limit.unwrap_or(otherwise);
             (-size, size)
         };
-        let rate = symmetric(joint.limits.velocity.as_ref().and_then(float), if revolute { 4.0 } else { 1.0 });
+        let rate = symmetric(given.velocity.as_ref().and_then(float), if revolute { 4.0 } else { 1.0 });
         domain.dq.push(rate);
         domain.dqr.push(rate);
         domain.ddq.push((-10.0, 10.0));
         domain.ddqr.push((-10.0, 10.0));
-        domain.tau.push(symmetric(joint.limits.effort.as_ref().and_then(float), 200.0));
+        domain.tau.push(symmetric(given.effort.as_ref().and_then(float), 200.0));
     }
     let around = |&value: &f64| {
         let ends = (value * 0.8, value * 1.2);
@@ -118,8 +118,8 @@ fn free_fall(manipulator: &Manipulator) -> f64 {
 /// A box with all angles, prismatic joints as far to one side as to the other, and parameters that are 0 in the description hardly more.
 pub fn symmetric(manipulator: &Manipulator, domain: &Domain) -> Domain {
     let mut wide = domain.clone();
-    for (joint, (low, high)) in manipulator.joints.iter().zip(&mut wide.q) {
-        let size = if joint.kind == JointKind::Revolute { std::f64::consts::PI } else { low.abs().max(high.abs()) };
+    for (of, (low, high)) in manipulator.coordinates().into_iter().zip(&mut wide.q) {
+        let size = if of.joint.kind == JointKind::Revolute { std::f64::consts::PI } else { low.abs().max(high.abs()) };
         (*low, *high) = (-size, size);
     }
     let largest = domain.pi.iter().fold(0.0f64, |most, (low, high)| most.max(low.abs()).max(high.abs()));

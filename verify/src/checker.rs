@@ -177,7 +177,8 @@ fn sizes(manipulator: &Manipulator, vector: &Vector, base: Option<&OwnParameters
     let base = base.map_or(0, |base| base.named.len());
     let gravity = manipulator.gravity_is_argument;
     let tips = manipulator.tips.iter().map(|tip| (tip.name.clone(), tip.task.len())).collect();
-    Sizes { n: manipulator.joints.len(), p: parameters, b: base, m: manipulator.task.len(), gravity, tips }
+    let joints = manipulator.coupling.as_ref().map(|coupling| coupling.variables.len());
+    Sizes { n: manipulator.dof(), joints, p: parameters, b: base, m: manipulator.task.len(), gravity, tips }
 }
 
 /// The program of a function that takes and gives what its name promises; else what is wrong.
@@ -207,7 +208,7 @@ fn fitting<'a>(
 fn other_velocity(program: &Program, manipulator: &Manipulator, real: Float) -> Option<String> {
     program.steps.iter().find_map(|step| {
         let Step::Stribeck(joint, literal) = step else { return None };
-        let Some(stribeck) = manipulator.joints.get(*joint).and_then(|joint| joint.stribeck.as_ref()) else {
+        let Some(stribeck) = manipulator.coordinates().get(*joint).and_then(|of| of.joint.stribeck.as_ref()) else {
             return Some(format!("joint {} has no Stribeck friction", joint + 1));
         };
         let written = &program.literals[*literal];
@@ -515,7 +516,7 @@ impl Checker {
         let dependent = || {
             let point = self.points.first()?;
             let literals = point.literals_of(program, literals)?;
-            dependent_column(point.arithmetic.clone(), program, &literals, self.manipulator.joints.len(), base.named.len())
+            dependent_column(point.arithmetic.clone(), program, &literals, self.manipulator.dof(), base.named.len())
         };
         let modular = modular.filter(|_| Check::Modular.is_made());
         let exact = || exact().filter(|_| Check::Rational.is_made());
@@ -530,7 +531,8 @@ impl Checker {
             return None;
         }
         let by = program.part(&operands);
-        let loaded: Vec<usize> = (0..self.sizes.n).filter(|&i| self.manipulator.joints[i].load.is_some()).collect();
+        let coordinates = self.manipulator.coordinates();
+        let loaded: Vec<usize> = (0..self.sizes.n).filter(|&a| coordinates[a].joint.load.is_some()).collect();
         let points = self.points.iter().map(|point| point.signed(&program.name, &by, chosen, &loaded));
         let Some(points) = points.collect::<Option<Vec<_>>>() else {
             return Some(Verdict::Refused("it takes the sign of what has no value".into()));
@@ -606,7 +608,7 @@ impl Odds {
             let nominal = own.nominal.iter().map(|value| degrees.constant(value)).collect::<Option<Vec<_>>>()?;
             Some((samples.map(&Degree::of), own.clone(), nominal))
         });
-        let circles = manipulator.joints.len() + constants.atoms.angles.len();
+        let circles = manipulator.dof() + constants.atoms.angles.len();
         let state = reference.state.map(&Degree::of);
         let of_entries = |(name, entries): (String, Vec<Number>)| (name, entries.into_iter().map(Degree::of).collect());
         let values = reference.values.into_iter().map(of_entries).collect();

@@ -21,7 +21,7 @@
 use std::fmt::Write;
 
 use crate::claims::Claims;
-use crate::contract::{of_tip, Promise};
+use crate::contract::{of_module, Promise};
 use crate::enclosure::Float;
 use crate::float::{Arguments, LANES};
 use crate::marked::{marked, FUSED, GRAVITY, LOAD, STRIBECK};
@@ -398,7 +398,7 @@ fn write_function(text: &mut String, program: &Program, table: &Table, promise: 
         "/// Running error bound of `{name}`, entry by entry.\n#[allow(clippy::all, dead_code)]\n#[rustfmt::skip]\npub fn {name}_error_bound({}) -> {} {{\n    static \
          STEPS: [Step; {}] = [{}];\n    static ANGLES: [Angle<'static>; {}] = [{}];\n    static ENTRIES: [u32; {}] = [{}];\n    let e = bounds::<_, _, {}>(&STEPS, &ANGLES, &ENTRIES, &Given {{ {}, ..NONE }});\n    {}\n}}\n\n",
         arguments.join(", "),
-        of_tip(&program.name, &promise.returned.rust()).replace(';', "; ").replace(',', ", "),
+        of_module(&program.name, sizes.joints.is_some(), &promise.returned.rust()).replace(';', "; ").replace(',', ", "),
         rows.len(),
         rows.join(", "),
         angles.len(),

@@ -1,8 +1,10 @@
 //! Compares the constants of a module with the description.
 
+use std::collections::BTreeSet;
+
 use armgen_description::exact::Number;
 use armgen_description::kinds::{JointKind, ParameterId};
-use armgen_description::manipulator::{Limits, Manipulator};
+use armgen_description::manipulator::{JointVariable, Limits, Manipulator};
 
 use crate::arithmetic::prime::Residue;
 use crate::base::OwnParameters;
@@ -14,7 +16,7 @@ use crate::enclosure::Float;
 use crate::equations::arm::{formula, Arm};
 use crate::equations::parameters::{self, Standard, Vector};
 use crate::formula::Formula;
-use crate::program::{Literal, NOMINAL_GRAVITY, TIPS};
+use crate::program::{Literal, JOINTS, NOMINAL_GRAVITY, TIPS};
 use crate::reader::{Constant, Module};
 use crate::report::{ConstantReport, Exact, Verdict};
 
@@ -166,24 +168,28 @@ pub fn nominal_parameters(manipulator: &Manipulator, vector: &Vector, claims: &C
 
 fn expected(checker: &Checker, module: &Module, nominal: &[Formula], names: &[String]) -> Vec<(String, Expected)> {
     let manipulator = checker.manipulator();
-    let joints = &manipulator.joints;
+    let coordinates = manipulator.coordinates();
     let array = |entries: Vec<Expected>| Expected::Array(entries);
     let texts = |texts: Vec<String>| array(texts.into_iter().map(Expected::Text).collect());
     let bound = |bound: Option<&Number>, negative: bool| match bound {
         Some(value) => Expected::Number(formula(value)),
         None => Expected::Infinite(negative),
     };
-    let position = joints.iter().map(|j| {
-        let pair = j.limits.position.as_ref();
+    let position = coordinates.iter().map(|of| {
+        let pair = of.limits.position.as_ref();
         array(vec![bound(pair.map(|p| &p[0]), true), bound(pair.map(|p| &p[1]), false)])
     });
-    let sizes = |of: fn(&Limits) -> &Option<Number>| array(joints.iter().map(|j| bound(of(&j.limits).as_ref(), false)).collect());
+    let sizes =
+        |of: fn(&Limits) -> &Option<Number>| array(coordinates.iter().map(|own| bound(of(own.limits).as_ref(), false)).collect());
     let parameter_names = checker.vector().names(manipulator).unwrap_or_else(|| names.to_vec());
     let mut all = vec![
         ("NAME", Expected::Text(manipulator.name.clone())),
-        ("DOF", Expected::Integer(joints.len() as u64)),
-        ("JOINT_NAMES", texts(joints.iter().map(|j| j.name.clone()).collect())),
-        ("JOINT_IS_REVOLUTE", array(joints.iter().map(|j| Expected::Truth(j.kind == JointKind::Revolute)).collect())),
+        ("DOF", Expected::Integer(coordinates.len() as u64)),
+        ("JOINT_NAMES", texts(coordinates.iter().map(|of| of.joint.name.clone()).collect())),
+        (
+            "JOINT_IS_REVOLUTE",
+            array(coordinates.iter().map(|of| Expected::Truth(of.joint.kind == JointKind::Revolute)).collect()),
+        ),
         ("POSITION_LIMITS", array(position.collect())),
         ("VELOCITY_LIMITS", sizes(|limits| &limits.velocity)),
         ("EFFORT_LIMITS", sizes(|limits| &limits.effort)),
@@ -203,12 +209,29 @@ fn expected(checker: &Checker, module: &Module, nominal: &[Formula], names: &[St
     }
     for tip in &manipulator.tips {
         let rows: Vec<usize> = tip.task.iter().map(|row| row.index()).collect();
-        let joints: Vec<usize> =
+        let joints = &manipulator.joints;
+        let path: Vec<usize> =
             std::iter::successors(Some(tip.joint.index()), |&joint| Some(joints[joint].parent?.index())).collect();
-        let joints: Vec<usize> = joints.into_iter().rev().collect();
+        let moving: BTreeSet<usize> = match &manipulator.coupling {
+            Some(coupling) => path.iter().flat_map(|&i| &coupling.variables[i].factors).map(|(a, _)| *a).collect(),
+            None => path.into_iter().collect(),
+        };
+        let moving: Vec<usize> = moving.into_iter().collect();
         of_tips.push((tip.constant("TASK_ROWS"), Expected::Integer(rows.len() as u64)));
         of_tips.push((tip.constant("TASK"), integers(&rows)));
-        of_tips.push((tip.constant("COORDINATES"), integers(&joints)));
+        of_tips.push((tip.constant("COORDINATES"), integers(&moving)));
+    }
+    if let Some(coupling) = &manipulator.coupling {
+        let row = |variable: &JointVariable| {
+            let factor = |a: usize| variable.factors.iter().find(|(of, _)| *of == a).map(|(_, factor)| factor.clone());
+            let entries = (0..coordinates.len()).map(|a| Expected::Number(formula(&factor(a).unwrap_or_default())));
+            array(entries.collect())
+        };
+        let offsets = coupling.variables.iter().map(|variable| Expected::Number(formula(&variable.offset)));
+        all.push((JOINTS, Expected::Integer(manipulator.joints.len() as u64)));
+        all.push(("ALL_JOINT_NAMES", texts(manipulator.joints.iter().map(|joint| joint.name.clone()).collect())));
+        all.push(("COUPLING", array(coupling.variables.iter().map(row).collect())));
+        all.push(("COUPLING_OFFSET", array(offsets.collect())));
     }
     if manipulator.gravity_is_argument {
         let nominal = |id: ParameterId| manipulator.parameters[id.0 as usize].nominal.clone();

@@ -5,8 +5,10 @@ use crate::program::Argument;
 /// Length of a dimension of a result.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Length {
-    /// The n joints.
+    /// The n coordinates: joints, where none is coupled.
     Dof,
+    /// All joints.
+    Joints,
     /// The p parameters.
     Parameters,
     /// The b base parameters.
@@ -31,8 +33,10 @@ impl Argument {
 /// The sizes of an arm.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Sizes {
-    /// Joints.
+    /// Coordinates.
     pub n: usize,
+    /// Joints, if they are more than coordinates because some are coupled.
+    pub joints: Option<usize>,
     /// Parameters.
     pub p: usize,
     /// Base parameters.
@@ -61,18 +65,30 @@ pub fn tip_of(function: &str) -> Option<&str> {
     function.strip_suffix(own.as_str())?.strip_suffix('_')
 }
 
-/// A text with the constant of the rows of the task, with that of the end effector of a function.
-pub(crate) fn of_tip(function: &str, text: &str) -> String {
+/// A text with the constants of joints and of the rows of the task as a module has them: without coupled joints `DOF` for both, and the rows of the
+/// end effector of a function.
+pub(crate) fn of_module(function: &str, is_coupled: bool, text: &str) -> String {
+    let text = if is_coupled { text.to_owned() } else { text.replace("JOINTS", "DOF") };
     match tip_of(function) {
         Some(tip) => text.replace("TASK_ROWS", &format!("{}_TASK_ROWS", tip.to_ascii_uppercase())),
-        None => text.to_owned(),
+        None => text,
     }
 }
 
 impl Length {
+    /// The same in a module of these sizes: without coupled joints there are as many joints as coordinates, and one constant.
+    pub(crate) fn in_module(self, sizes: &Sizes) -> Length {
+        if self == Length::Joints && sizes.joints.is_none() {
+            Length::Dof
+        } else {
+            self
+        }
+    }
+
     pub(crate) fn of(self, sizes: &Sizes) -> usize {
         match self {
             Length::Dof => sizes.n,
+            Length::Joints => sizes.joints.unwrap_or(sizes.n),
             Length::Parameters => sizes.p,
             Length::BaseParameters => sizes.b,
             Length::Task => sizes.m,
@@ -83,6 +99,7 @@ impl Length {
     pub(crate) fn rust(self) -> String {
         match self {
             Length::Dof => "DOF".into(),
+            Length::Joints => "JOINTS".into(),
             Length::Parameters => "PARAMETERS".into(),
             Length::BaseParameters => "BASE_PARAMETERS".into(),
             Length::Task => "TASK_ROWS".into(),

@@ -111,7 +111,7 @@ use claims::Claims;
 use enclosure::Float;
 use equations::parameters::Vector;
 use formula::Formula;
-use program::{NOMINAL_GRAVITY, TIPS};
+use program::{JOINTS, NOMINAL_GRAVITY, TIPS};
 use reader::{Constant, Module, ModuleText};
 use report::{Report, Verdict};
 use rounding::Trial;
@@ -145,6 +145,11 @@ pub fn prepare<'a>(
     match (module.sizes().gravity, manipulator.gravity_is_argument) {
         (true, false) => return Err(format!("{NOMINAL_GRAVITY}: gravity is no argument in the description")),
         (false, true) => return Err(format!("{NOMINAL_GRAVITY} is missing: gravity is an argument in the description")),
+        _ => {}
+    }
+    match (module.constants.contains_key(JOINTS), manipulator.coupling.is_some()) {
+        (true, false) => return Err(format!("{JOINTS}: no joint is coupled in the description")),
+        (false, true) => return Err(format!("{JOINTS} is missing: joints are coupled in the description")),
         _ => {}
     }
     match (module.constants.contains_key(TIPS), manipulator.tips.is_empty()) {

@@ -7,7 +7,7 @@
 
 use std::collections::BTreeMap;
 
-use armgen_description::manipulator::{Joint, Manipulator};
+use armgen_description::manipulator::{Coordinate, Manipulator};
 
 use crate::arithmetic::running::{Running, RunningNumbers};
 use crate::arithmetic::Arithmetic;
@@ -57,8 +57,8 @@ impl Plain<'_> {
     /// The velocities at which Stribeck friction fades, of joints that have it.
     fn stribeck_velocities(&self) -> impl Iterator<Item = Option<f64>> + '_ {
         let velocity =
-            |joint: &Joint| joint.stribeck.as_ref().and_then(|stribeck| Float::F64.nearest(&formula(&stribeck.velocity)));
-        self.manipulator.joints.iter().map(velocity)
+            |of: Coordinate<'_>| of.joint.stribeck.as_ref().and_then(|stribeck| Float::F64.nearest(&formula(&stribeck.velocity)));
+        self.manipulator.coordinates().into_iter().map(velocity)
     }
 
     fn is_base(&self) -> bool {

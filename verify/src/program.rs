@@ -8,6 +8,8 @@ use crate::formula::{Formula, MOST_BITS};
 /// The constant of modules that have the acceleration of free fall as an argument.
 pub const NOMINAL_GRAVITY: &str = "NOMINAL_GRAVITY";
 
+/// The constant with the number of joints, of modules alone whose joints are coupled.
+pub const JOINTS: &str = "JOINTS";
 /// The constant with the names of the end effectors, in modules where these have names.
 pub const TIPS: &str = "TIPS";
 

@@ -27,7 +27,7 @@ use armgen_description::language::Language;
 use crate::check::{parallel_map, Check};
 use crate::contract::Sizes;
 use crate::enclosure::Float;
-use crate::program::{Program, NOMINAL_GRAVITY, TIPS};
+use crate::program::{Program, JOINTS, NOMINAL_GRAVITY, TIPS};
 use body::Shared;
 pub(crate) use c::in_the_name_of;
 pub use constant::Constant;
@@ -195,8 +195,14 @@ impl Module {
         }
         items.check_companions(&constants)?;
         let trig = sines::check(&items.private, real)?;
-        let shared =
-            Shared { real, parts: &items.parts, written: &items.written, fast: trig == Some("fast"), steps: AtomicUsize::new(0) };
+        let shared = Shared {
+            real,
+            parts: &items.parts,
+            written: &items.written,
+            fast: trig == Some("fast"),
+            is_coupled: items.is_coupled,
+            steps: AtomicUsize::new(0),
+        };
         let compiled = parallel_map(&items.public, |function| body::compile(function, &shared));
         // The order of the threads decides which function exceeds the limit, so the fault names no function.
         if shared.is_too_long() {
@@ -234,7 +240,8 @@ impl Module {
         let gravity = self.constants.contains_key(NOMINAL_GRAVITY);
         let tips = tips_of(&self.constants);
         let tips = tips.into_iter().map(|tip| (tip.clone(), of(&constant_of(&tip, "TASK_ROWS")))).collect();
-        Sizes { n: of("DOF"), p: of("PARAMETERS"), b: of("BASE_PARAMETERS"), m: of("TASK_ROWS"), gravity, tips }
+        let joints = self.constants.contains_key(JOINTS).then(|| of(JOINTS));
+        Sizes { n: of("DOF"), joints, p: of("PARAMETERS"), b: of("BASE_PARAMETERS"), m: of("TASK_ROWS"), gravity, tips }
     }
 
     /// The programs of all readable functions, by name.

@@ -52,12 +52,13 @@ impl Promise {
 }
 
 /// All functions known to the checker, independent of the generator's catalogue; a test compares the two.
-pub const PROMISES: [Promise; 24] = [
+pub const PROMISES: [Promise; 25] = [
     promise("direct_kinematics", &["q"], Returned::One(FRAME)).of_an_end_effector(),
-    promise("link_frames", &["q"], Returned::One(&[N, Length::Of(4), Length::Of(4)])),
+    promise("link_frames", &["q"], Returned::One(&[Length::Joints, Length::Of(4), Length::Of(4)])),
     promise("geometric_jacobian", &["q"], Returned::One(JACOBIAN)).of_an_end_effector(),
     promise("geometric_jacobian_dot", &["q", "dq"], Returned::One(JACOBIAN)).of_an_end_effector(),
-    promise("link_jacobians", &["q"], Returned::One(&[N, Length::Of(6), N])),
+    promise("link_jacobians", &["q"], Returned::One(&[Length::Joints, Length::Of(6), N])),
+    promise("joint_variables", &["q"], Returned::One(&[Length::Joints])).not_of_every_arm(),
     promise("inertia_matrix", &["q"], Returned::One(SQUARE)).with_parameters(),
     promise("coriolis_matrix", &["q", "dq"], Returned::One(SQUARE)).with_parameters(),
     promise("gravity", &["g0", "q"], Returned::One(VECTOR)).with_parameters(),
@@ -309,6 +310,9 @@ fn kinematics<E: Element>(arm: &Arm<E>, state: &State<E>, values: &mut Values<E>
     let pose = Pose::new(arm, state);
     let frames = pose.links.iter().flat_map(|frame| pose.homogeneous(frame, &arm.one)).collect();
     values.insert("link_frames".into(), frames);
+    if arm.coupling.is_some() {
+        values.insert("joint_variables".into(), arm.joint_variables(&state.q));
+    }
     let of_link = |(i, link): (usize, &Frame<E>)| {
         let columns = pose.jacobian(Some(i), &link.origin);
         let rows = |of: fn(&(Vector3<E>, Vector3<E>)) -> &Vector3<E>| -> Vec<E> {
@@ -359,8 +363,8 @@ impl<E: Element> Reference<E> {
         vector: &Vector,
         wanted: Wanted,
     ) -> Result<Reference<E>, String> {
-        let fades = manipulator.joints.iter().map(|joint| joint.stribeck.is_some());
-        let state = State::draw(arithmetic, manipulator.joints.len()).with_stribeck(arithmetic, fades);
+        let fades = manipulator.coordinates().into_iter().map(|of| of.joint.stribeck.is_some());
+        let state = State::draw(arithmetic, manipulator.dof()).with_stribeck(arithmetic, fades);
         let state = state.with_gravity(arithmetic, manipulator.gravity_is_argument);
         Reference::at(arithmetic, manipulator, vector, state, wanted)
     }
@@ -376,7 +380,7 @@ impl<E: Element> Reference<E> {
         let nominal_values = Arm::nominal(arithmetic, manipulator).ok_or_else(divided)?;
         let arm = Arm::new(arithmetic, manipulator, &nominal_values).ok_or_else(divided)?.under(&state.g0);
         let n = arm.dof();
-        state.stribeck_velocities = arm.joints.iter().map(|joint| joint.stribeck_velocity.clone()).collect();
+        state.stribeck_velocities = (0..n).map(|a| arm.joints[arm.joint_of(a)].stribeck_velocity.clone()).collect();
         let mut values = Values::new();
         kinematics(&arm, &state, &mut values);
         if manipulator.is_massless() {

@@ -296,6 +296,7 @@ fn kinds(function: &str, checker: &Checker) -> Vec<usize> {
     let task = of_tip.map_or(&manipulator.task, |tip| &tip.task);
     let base = checker.base().map(|own| units(own.named.iter().map(|(parameter, _)| *parameter))).unwrap_or_default();
     let columns = checker.vector().units();
+    let coordinates = manipulator.coordinates();
     let of_unit = |unit: Unit| match unit {
         Unit::Mass => 0,
         Unit::Moment => 1,
@@ -303,7 +304,8 @@ fn kinds(function: &str, checker: &Checker) -> Vec<usize> {
         Unit::Own(number) => 3 + number,
     };
     let sort = |length: Length, index: usize| match length {
-        Length::Dof => usize::from(manipulator.joints[index].kind == JointKind::Revolute),
+        Length::Dof => usize::from(coordinates[index].joint.kind == JointKind::Revolute),
+        Length::Joints => usize::from(manipulator.joints[index].kind == JointKind::Revolute),
         Length::Parameters => of_unit(columns[index]),
         Length::BaseParameters => of_unit(base[index]),
         Length::Task => task[index].index() / 3,
@@ -317,7 +319,7 @@ fn kinds(function: &str, checker: &Checker) -> Vec<usize> {
         let mut all = vec![vec![part]];
         for (place, &length) in lengths.iter().enumerate() {
             // What a list of frames or of Jacobians has for each link.
-            let of_links = matches!(lengths[place..], [Length::Dof, Length::Of(_), ..]);
+            let of_links = matches!(lengths[place..], [Length::Joints, Length::Of(_), ..]);
             let sort = |index: usize| if of_links { 0 } else { sort(length, index) };
             let extended = |kind: &Vec<usize>| {
                 let longer = |index| [&kind[..], &[sort(index)]].concat();

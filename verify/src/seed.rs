@@ -9,7 +9,7 @@
 //! ([`crate::report::MOST_LOG2_ODDS`]).
 
 use armgen_description::exact::{Number, Polynomial};
-use armgen_description::manipulator::{Body, Joint, Manipulator, PlacedBody, Placement, Pose, RegressorChoice};
+use armgen_description::manipulator::{Body, Coupling, Joint, Manipulator, PlacedBody, Placement, Pose, RegressorChoice};
 use sha2::{Digest, Sha256};
 
 use crate::claims::{Claims, Resolved};
@@ -161,6 +161,7 @@ fn of_description(manipulator: &Manipulator) -> Hash {
         regressor,
         inverse_kinematics: _,
         tips,
+        coupling,
     } = manipulator;
     parameters.iter().for_each(|parameter| arm.number(&parameter.nominal));
     arm.polynomials(gravity);
@@ -229,6 +230,18 @@ fn of_description(manipulator: &Manipulator) -> Hash {
         if let Some(payload) = &tip.payload {
             arm.word("payload");
             arm.part(payload);
+        }
+    }
+    if let Some(Coupling { coordinates, limits: _, variables }) = coupling {
+        // Limits of coordinates follow from those of joints.
+        arm.word(&format!("coupled {coordinates:?}"));
+        for variable in variables {
+            arm.word("variable");
+            for (a, factor) in &variable.factors {
+                arm.word(&a.to_string());
+                arm.number(factor);
+            }
+            arm.number(&variable.offset);
         }
     }
     match regressor {

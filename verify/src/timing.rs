@@ -345,6 +345,9 @@ struct Nodes(Vec<f64>);
 impl Checker {
     fn new(manipulator: &Manipulator, file: File) -> Result<Checker, String> {
         let names: Vec<&String> = manipulator.joints.iter().map(|joint| &joint.name).collect();
+        if manipulator.coupling.is_some() {
+            return Err("coupled joints are not treated".to_owned());
+        }
         if names != file.joints.iter().collect::<Vec<_>>() {
             return Err("its joints are not those of the description".to_owned());
         }

@@ -65,6 +65,9 @@ impl Pool {
     pub fn constant_of(&mut self, other: &Pool, expr: ExprId) -> ExprId {
         debug_assert_eq!(self.field.prime(), other.field.prime());
         let element = other.fingerprint(expr.unsigned())[0];
+        if self.fingerprints_only {
+            return self.by_fingerprint(element).signed(expr.is_negated());
+        }
         let size = other.value(expr.unsigned()).into_owned();
         self.interned(size, element, Some(false)).signed(expr.is_negated())
     }

@@ -61,6 +61,7 @@ pub(crate) fn run(file: &Path, asked: &Asked) -> u8 {
 fn run_or_exit_code(file: &Path, asked: &Asked) -> Result<u8, u8> {
     let source = input::description(file)?;
     let (manipulator, _) = input::manipulator(&source, Scalar::F64, input::Warnings::Counted)?;
+    input::without_coupling(&source, &manipulator, "excite")?;
     let options = options_of(asked)?;
     let arm = with_spinner("deriving", || Arm::new(&manipulator, false)).ok_or_else(|| {
         terminal::error(&format!("{}: nothing of this arm has mass, so no motion shows parameters", file.display()));

@@ -41,6 +41,7 @@ pub(crate) fn run(file: &Path, asked: &Asked) -> u8 {
 fn run_or_exit_code(file: &Path, asked: &Asked) -> Result<u8, u8> {
     let source = input::description(file)?;
     let (manipulator, _) = input::manipulator(&source, Scalar::F64, input::Warnings::Counted)?;
+    input::without_coupling(&source, &manipulator, "identify")?;
     let (chosen, folder) = options_of(asked)?;
     let arm = with_spinner("deriving", || Arm::new(&manipulator, chosen.link_side)).ok_or_else(|| {
         terminal::error(&format!("{}: nothing of this arm has mass, so there is nothing to identify", file.display()));

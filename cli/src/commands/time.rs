@@ -89,6 +89,7 @@ pub(crate) fn run(robot: &Path, path: Option<&Path>, asked: &Asked) -> u8 {
 fn timed(robot: &Path, path: &Path, asked: &Asked) -> Result<u8, u8> {
     let source = input::description(robot)?;
     let (manipulator, _) = input::manipulator(&source, Scalar::F64, input::Warnings::Counted)?;
+    input::without_coupling(&source, &manipulator, "time")?;
     let given = input::source(path)?;
     let (file, mut diagnostics) = file::read(&given, &manipulator, true);
     let Some(file) = file else { return Err(refused(&given, &diagnostics)) };

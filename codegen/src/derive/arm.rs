@@ -11,6 +11,7 @@
 //! A body is its mass m, first moment h = ∫ r dm and second moments S = ∫ r r' dm: with these, moving a body to another frame is
 //! one congruence, and the inertia tensor is tr(S) 1 - S.
 
+use super::coupling::Coupled;
 use super::parameters::{second_moments, Inertial, StandardParameter, View};
 use crate::exact::Number;
 use crate::kinds::JointKind;
@@ -118,6 +119,8 @@ pub struct Arm {
     pub loads: Vec<Tool>,
     /// First moment, in the base frame, of the rotors that ride on the base: a constant of the potential energy.
     pub base_moment: Vector,
+    /// The coupling of joints, where there is one.
+    pub coupling: Option<Coupled>,
 }
 
 impl Body {
@@ -261,7 +264,8 @@ impl Arm {
             manipulator.gravity.clone().map(|g| view.polynomial(pool, manipulator, &g))
         };
         let own = tool(pool, manipulator, view, &joints, manipulator.tip.index(), &manipulator.tool);
-        let mut arm = Arm { joints, gravity, tool: own, loads: Vec::new(), base_moment: ZERO };
+        let coupling = manipulator.coupling.as_ref().map(|coupling| Coupled::new(pool, coupling));
+        let mut arm = Arm { joints, gravity, tool: own, loads: Vec::new(), base_moment: ZERO, coupling };
         for (load, number) in manipulator.loads().into_iter().zip(0..) {
             let Tool { link, rotation, origin } = tool(pool, manipulator, view, &arm.joints, load.link, load.tool);
             arm.loads.push(Tool { link, rotation, origin });
@@ -324,6 +328,66 @@ impl Arm {
                 (axis[..2] == [ExprId::ZERO; 2]).then_some((before as u16, axis[2].is_negated()))
             })
             .collect()
+    }
+
+    /// Number of coordinates.
+    pub fn coordinates(&self) -> usize {
+        self.coupling.as_ref().map_or(self.dof(), |coupled| coupled.coordinates().len())
+    }
+
+    /// S' of a vector with an entry for each joint.
+    pub fn project(&self, pool: &mut Pool, vector: Vec<ExprId>) -> Vec<ExprId> {
+        match &self.coupling {
+            Some(coupled) => coupled.contract(pool, &vector, 1),
+            None => vector,
+        }
+    }
+
+    /// M S, row by row, of a matrix with a column for each joint.
+    pub fn project_columns(&self, pool: &mut Pool, rows: Vec<Vec<ExprId>>) -> Vec<Vec<ExprId>> {
+        rows.into_iter().map(|row| self.project(pool, row)).collect()
+    }
+
+    /// S' M S.
+    pub fn project_matrix(&self, pool: &mut Pool, matrix: Vec<Vec<ExprId>>) -> Vec<Vec<ExprId>> {
+        let Some(coupled) = &self.coupling else { return matrix };
+        let rows = self.project_columns(pool, matrix);
+        let columns = self.coordinates();
+        let entries = coupled.contract(pool, &rows.concat(), columns);
+        entries.chunks(columns).map(<[ExprId]>::to_vec).collect()
+    }
+
+    /// S a of the accelerations of coordinates.
+    pub fn spread(&self, pool: &mut Pool, accelerations: Vec<ExprId>) -> Vec<ExprId> {
+        match &self.coupling {
+            Some(coupled) => coupled.spread(pool, &accelerations),
+            None => accelerations,
+        }
+    }
+
+    /// Expressions in the variables of joints as expressions in coordinates, in a pool of their own where joints are coupled.
+    pub fn in_coordinates(&self, pool: Pool, exprs: Vec<ExprId>) -> (Pool, Vec<ExprId>) {
+        let into = Pool::new(pool.field().clone());
+        self.in_coordinates_of(pool, exprs, into)
+    }
+
+    /// The same in the given pool.
+    pub(super) fn in_coordinates_of(&self, pool: Pool, exprs: Vec<ExprId>, mut into: Pool) -> (Pool, Vec<ExprId>) {
+        let Some(coupled) = &self.coupling else { return (pool, exprs) };
+        let found = coupled.substitute(&pool, &mut into, &exprs);
+        (into, found)
+    }
+
+    /// For each coordinate the one before it whose axis is parallel to its own, and whether it points the other way.
+    pub(super) fn parallel_coordinates(&self) -> Vec<Option<(u16, bool)>> {
+        let parallel = self.parallel_axes();
+        let Some(coupled) = &self.coupling else { return parallel };
+        let of = |&joint: &usize| {
+            let (before, opposite) = parallel[joint].filter(|_| coupled.has_one_coordinate(joint))?;
+            let place = coupled.coordinates().iter().position(|&of| of == usize::from(before))?;
+            coupled.has_one_coordinate(usize::from(before)).then_some((place as u16, opposite))
+        };
+        coupled.coordinates().iter().map(of).collect()
     }
 
     /// A body in joint frame i with mass, first and second moment along z only, in the parent's joint frame: the same for every joint angle.

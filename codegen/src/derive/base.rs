@@ -315,7 +315,7 @@ pub fn regressor_of(manipulator: &Manipulator, field: &Field, vector: &Parameter
     let mut pool = Pool::new(field.clone());
     let arm = Arm::new(&mut pool, manipulator, View::Vector(vector));
     let y = regressor(&mut pool, &arm, vector);
-    (pool, y)
+    in_coordinates(pool, &arm, y)
 }
 
 /// Moves the origin of each joint frame to the foot of the common normal with the axis before, so that most lever arms vanish, and rotates the
@@ -397,6 +397,7 @@ fn combined(
     if !own {
         y = with_friction_apart(&y, &columns);
     }
+    let (pool, y) = in_coordinates(pool, &arm, y);
     let dependence = dependence(&pool, &y);
     let mut base: Vec<(StandardParameter, Parameter, Vec<Number>)> = dependence
         .independent
@@ -417,6 +418,22 @@ fn combined(
     let combinations = base.iter().map(|(.., total)| total.clone()).collect();
     let (kept, entries) = base.into_iter().map(|(parameter, entry, _)| (parameter, entry)).unzip();
     (ParameterVector { entries, kind: ParameterKind::Base(kept) }, combinations)
+}
+
+/// The rows of a regressor, or several blocks of them, in coordinates: S' Y.
+fn in_coordinates(mut pool: Pool, arm: &Arm, y: Vec<Vec<ExprId>>) -> (Pool, Vec<Vec<ExprId>>) {
+    if arm.coupling.is_none() {
+        return (pool, y);
+    }
+    let columns = y.first().map_or(0, Vec::len);
+    let mut rows = Vec::new();
+    for block in y.chunks(arm.dof()) {
+        let projected: Vec<Vec<ExprId>> =
+            (0..columns).map(|c| arm.project(&mut pool, block.iter().map(|row| row[c]).collect())).collect();
+        rows.extend((0..arm.coordinates()).map(|a| projected.iter().map(|column| column[a]).collect::<Vec<ExprId>>()));
+    }
+    let (pool, entries) = arm.in_coordinates(pool, rows.concat());
+    (pool, entries.chunks(columns.max(1)).map(<[ExprId]>::to_vec).collect())
 }
 
 /// The rows of friction below the rows of all other torques.

@@ -8,7 +8,8 @@ use crate::ring::field::Field;
 /// A field with the roots of a valid arm's constants, and with the sine and cosine of the angle that may turn its last link.
 pub fn field_of(manipulator: &Manipulator) -> Field {
     let plain = find_field(manipulator).expect("validation refuses an arm without a field");
-    let turn = passes::angle_of_last_link(&plain, manipulator);
+    // In coordinates the last link may turn with several of them, or with none.
+    let turn = if manipulator.coupling.is_some() { None } else { passes::angle_of_last_link(&plain, manipulator) };
     turn.and_then(|turn| Field::with_turn(&constants(manipulator), turn)).unwrap_or(plain)
 }
 
@@ -53,6 +54,17 @@ fn constants(manipulator: &Manipulator) -> Vec<Number> {
     }
     numbers.extend(manipulator.joints.iter().filter_map(|joint| Some(joint.stribeck.as_ref()?.velocity.clone())));
     numbers.extend(manipulator.joints.iter().filter_map(|joint| joint.load.clone()));
+    for variable in manipulator.coupling.iter().flat_map(|coupling| &coupling.variables) {
+        numbers.extend(
+            variable
+                .factors
+                .iter()
+                .map(|(_, factor)| factor)
+                .chain([&variable.offset])
+                .chain(variable.turn.iter().flatten())
+                .cloned(),
+        );
+    }
     numbers.extend(manipulator.parameters.iter().map(|p| p.nominal.clone()));
     numbers.extend(manipulator.gravity.iter().flat_map(|p| p.terms().map(|(_, c)| c.clone())));
     numbers

@@ -98,6 +98,7 @@ pub fn determinant(model: &Model, view: View<'_>) -> Option<Determinant> {
     let mut pool = Pool::new(model.field.clone());
     let arm = Arm::new(&mut pool, manipulator, view);
     let jacobian = geometric_jacobian(&mut pool, &arm);
+    let (mut pool, jacobian) = in_coordinates(pool, &arm, jacobian);
     let task: Vec<Vec<ExprId>> = manipulator.task.iter().map(|row| jacobian[row.index()].clone()).collect();
     let value = of_columns(&mut pool, &task)[(1 << task.len()) - 1];
     let (mut simple, task) = without_fixed(&mut pool, &[value], &task);
@@ -106,6 +107,13 @@ pub fn determinant(model: &Model, view: View<'_>) -> Option<Determinant> {
     let form = simple.normal_forms(&[reduced], TERMS).remove(0);
     let factors = form.as_ref().map_or_else(Vec::new, |form| factors(model, form));
     Some(Determinant { pool: simple, value: reduced, form, factors })
+}
+
+/// A Jacobian with a column for each joint as that of the coordinates, J S.
+fn in_coordinates(mut pool: Pool, arm: &Arm, jacobian: Vec<Vec<ExprId>>) -> (Pool, Vec<Vec<ExprId>>) {
+    let jacobian = arm.project_columns(&mut pool, jacobian);
+    let (pool, entries) = arm.in_coordinates(pool, jacobian.concat());
+    (pool, entries.chunks(arm.coordinates()).map(<[ExprId]>::to_vec).collect())
 }
 
 /// A matrix in a pool of its own, with those joint variables set to 0 that none of some values depends on.

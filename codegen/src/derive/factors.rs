@@ -29,9 +29,9 @@ impl LdlFactors {
         LdlFactors::in_order(pool, m, (0..m.len()).collect())
     }
 
-    /// Factors the inertia matrix of an arm.
+    /// Factors the inertia matrix of an arm, in its coordinates.
     pub fn of_inertia(pool: &mut Pool, arm: &Arm, b: &[Vec<ExprId>]) -> LdlFactors {
-        let joints = 0..arm.dof();
+        let joints = 0..arm.coordinates();
         LdlFactors::in_order(pool, b, if arm.is_chain() { joints.collect() } else { joints.rev().collect() })
     }
 

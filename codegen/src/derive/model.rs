@@ -10,8 +10,10 @@ use crate::ring::field::Field;
 /// Numbers of an arm that determine the dimensions of its quantities.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Sizes {
-    /// Number of joints.
+    /// Number of coordinates.
     pub dof: usize,
+    /// Number of joints.
+    pub joints: usize,
     /// Number of parameters.
     pub parameters: usize,
     /// Number of base parameters.
@@ -60,6 +62,7 @@ impl Model {
     pub fn sizes_with(&self, base_parameters: usize) -> Sizes {
         Sizes {
             dof: self.manipulator.dof(),
+            joints: self.manipulator.joints.len(),
             parameters: self.parameters.len(),
             base_parameters,
             task: self.manipulator.task.len(),

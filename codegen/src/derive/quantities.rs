@@ -10,6 +10,7 @@ pub mod friction;
 pub mod gravity;
 pub mod inertia;
 pub mod inverse_dynamics;
+pub mod joint_variables;
 pub mod kinematics;
 pub mod kinetic_energy;
 pub mod load_friction;
@@ -20,8 +21,9 @@ pub mod regressor;
 use super::quantity::Quantity;
 
 /// All quantities, file by file, in the order of the emitted module.
-pub(crate) static DECLARED: [&[&Quantity]; 16] = [
+pub(crate) static DECLARED: [&[&Quantity]; 17] = [
     &kinematics::DECLARED,
+    &[&joint_variables::JOINT_VARIABLES],
     &[&inertia::INERTIA_MATRIX],
     &[&coriolis::CORIOLIS_MATRIX],
     &[&gravity::GRAVITY],

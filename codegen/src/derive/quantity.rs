@@ -107,8 +107,12 @@ pub struct Structure {
 /// A dimension of a result or of an argument.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Length {
-    /// Number of joints.
+    /// Number of coordinates: of joints, where none is coupled.
     Dof,
+    /// Number of joints: of a robot without coupled joints the number of coordinates, whose constant it has.
+    Joints,
+    /// Number of joints of a robot with coupled joints, in a constant of its own.
+    AllJoints,
     /// Number of parameters.
     Parameters,
     /// Number of base parameters.
@@ -198,6 +202,8 @@ pub struct Recursion {
     pub starts: &'static [Start],
     /// What it is of.
     pub of: Of,
+    /// Whether the entries are of coordinates already, where joints are coupled.
+    pub in_coordinates: bool,
 }
 
 /// What a quantity is of.
@@ -276,7 +282,16 @@ impl Recursion {
         fn as_asked<'a>(_: &'a Model, view: View<'a>) -> View<'a> {
             view
         }
-        Recursion { entries, rewriting, view: as_asked, prepare: |_, _| (), without: &[], starts: &[Start::PLAIN], of: Of::Robot }
+        Recursion {
+            entries,
+            rewriting,
+            view: as_asked,
+            prepare: |_, _| (),
+            without: &[],
+            starts: &[Start::PLAIN],
+            of: Of::Robot,
+            in_coordinates: false,
+        }
     }
 }
 
@@ -316,6 +331,7 @@ impl Length {
     pub fn of(self, sizes: &Sizes) -> usize {
         match self {
             Length::Dof => sizes.dof,
+            Length::Joints | Length::AllJoints => sizes.joints,
             Length::Parameters => sizes.parameters,
             Length::BaseParameters => sizes.base_parameters,
             Length::Task => sizes.task,
@@ -326,7 +342,8 @@ impl Length {
     /// The constant of the emitted module that holds it, or the number.
     pub fn constant(self) -> String {
         match self {
-            Length::Dof => "DOF".into(),
+            Length::Dof | Length::Joints => "DOF".into(),
+            Length::AllJoints => "JOINTS".into(),
             Length::Parameters => "PARAMETERS".into(),
             Length::BaseParameters => "BASE_PARAMETERS".into(),
             Length::Task => "TASK_ROWS".into(),
@@ -448,6 +465,23 @@ impl Quantity {
         })
     }
 
+    /// The same quantity of a robot with coupled joints, which has more joints than coordinates. Each is made once, as [`Quantity::of_tip`] does.
+    pub fn of_coupled_joints(&'static self) -> &'static Quantity {
+        static ALL: Mutex<BTreeMap<&'static str, &'static Quantity>> = Mutex::new(BTreeMap::new());
+        if !self.has_length(Length::Joints) {
+            return self;
+        }
+        let mut all = ALL.lock().unwrap_or_else(PoisonError::into_inner);
+        all.entry(self.name).or_insert_with(|| {
+            let length = |&length: &Length| if length == Length::Joints { Length::AllJoints } else { length };
+            let result = self.result.iter().map(|part| {
+                let lengths: Vec<Length> = part.lengths.iter().map(length).collect();
+                ResultPart { lengths: Box::leak(lengths.into_boxed_slice()), ..*part }
+            });
+            Box::leak(Box::new(Quantity { result: Box::leak(result.collect::<Vec<_>>().into_boxed_slice()), ..*self }))
+        })
+    }
+
     /// The arguments of its function for an arm, in order.
     pub fn arguments_of(&self, with_parameters: bool, gravity_is_argument: bool) -> impl Iterator<Item = Argument> {
         let there = move |argument: &Argument| *argument != Argument::Gravity || gravity_is_argument;
@@ -495,6 +529,31 @@ impl Quantity {
         columns.into_values().collect()
     }
 
+    /// The entries for the coordinates instead of for the joints; those of its dimensions that are of joints stay.
+    pub(crate) fn of_coordinates(&self, pool: &mut Pool, arm: &Arm, sizes: &Sizes, entries: Vec<ExprId>) -> Vec<ExprId> {
+        let Some(coupled) = arm.coupling.as_ref().filter(|_| !self.recursion.in_coordinates) else { return entries };
+        let mut rest = entries.as_slice();
+        let mut all = Vec::new();
+        for part in self.result {
+            let length = |&of: &Length| if of == Length::Dof { arm.dof() } else { of.of(sizes) };
+            let lengths: Vec<usize> = part.lengths.iter().map(length).collect();
+            let (own, others) = rest.split_at(lengths.iter().product());
+            rest = others;
+            let mut own = own.to_vec();
+            let mut inner = 1;
+            for (&of, length) in part.lengths.iter().zip(lengths).rev() {
+                if of == Length::Dof {
+                    own = coupled.contract(pool, &own, inner);
+                    inner *= arm.coordinates();
+                } else {
+                    inner *= length;
+                }
+            }
+            all.extend(own);
+        }
+        all
+    }
+
     /// The forms that it has: without parameters at run time, and perhaps with them.
     pub fn forms(&self) -> &'static [bool] {
         if self.has_parameters {
@@ -530,28 +589,32 @@ impl Quantity {
         let mut pool = Pool::new(model.field.clone());
         let mut arm = Arm::new(&mut pool, &model.manipulator, input.view);
         prepare(&mut pool, &mut arm);
-        let derive = |pool: &mut Pool, plan: &mut Plan| {
+        let sizes = model.sizes_with(if self.has_length(Length::BaseParameters) { model.base_parameters().len() } else { 0 });
+        let blank = Pool::new(model.field.clone());
+        let derive = |mut pool: Pool, into: Pool, plan: &mut Plan| {
             let mut arm = arm.clone();
-            passes::rewrite(pool, &mut arm, plan, rewriting);
-            entries(pool, &arm, plan, &input)
+            passes::rewrite(&mut pool, &mut arm, plan, rewriting);
+            let entries = entries(&mut pool, &arm, plan, &input);
+            let entries = self.of_coordinates(&mut pool, &arm, &sizes, entries);
+            arm.in_coordinates_of(pool, entries, into)
         };
         without.iter().for_each(|&pass| plan.disable(pass));
         passes::disable_unsuitable(&pool, &arm, &mut plan);
         if effort > 0 {
-            let (fingerprints_only, mut nodes) = (pool.fingerprints_only(), 0);
+            let (fingerprints_only, own, mut nodes) = (pool.fingerprints_only(), blank.fingerprints_only(), 0);
             plan = plan.search_from(starts, effort, &mut |plan| {
                 let mut pool = fingerprints_only.clone();
                 pool.reserve(nodes);
-                let entries = derive(&mut pool, plan);
+                let (pool, entries) = derive(pool, own.clone(), plan);
                 nodes = pool.len();
                 let (entries, _) = pool.with_gravity(&entries);
                 let pairs = pool.angles(&entries).len();
                 (pool.operations(&entries, DIVISION_COST) + SINE_COSINE_COST * pairs, pool.len())
             });
         }
-        let entries = derive(&mut pool, &mut plan);
+        let (pool, entries) = derive(pool, blank, &mut plan);
         let grouped = rewriting == RewriteScope::Dynamics && plan.has(Pass::Grouping);
-        let parallel = arm.parallel_axes();
+        let parallel = arm.parallel_coordinates();
         Derivation { pool, entries, parallel, method: if grouped { OVER_GROUPED_BODIES } else { OVER_THE_LINKS } }
     }
 }

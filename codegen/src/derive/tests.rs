@@ -646,7 +646,7 @@ fn operational_inertia_is_the_inverse_of_the_mobility_of_the_task() {
             let mut pool = Pool::new(field_of(&manipulator));
             let arm = Arm::new(&mut pool, &manipulator, View::Nominal);
             let field = pool.field().clone();
-            if !operational_inertia::is_defined(&field, &arm, &mut pool, &task) {
+            if !operational_inertia::is_defined(&field, &arm, pool.clone(), &task) {
                 continue;
             }
             defined += 1;

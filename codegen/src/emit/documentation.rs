@@ -237,6 +237,8 @@ pub struct DescribedParameters {
     pub gravity_is_argument: bool,
     /// The names of end effectors; none where there is one without a name.
     pub tips: Vec<String>,
+    /// Whether joints are coupled.
+    pub is_coupled: bool,
 }
 
 impl DescribedParameters {
@@ -248,6 +250,7 @@ impl DescribedParameters {
             turn: turn(module),
             gravity_is_argument: module.gravity_is_argument,
             tips: module.tips.iter().map(|tip| tip.name.clone()).collect(),
+            is_coupled: module.coupling.is_some(),
         }
     }
 
@@ -342,8 +345,16 @@ mod tests {
 
     #[test]
     fn every_link_leads_somewhere() {
-        const CONSTANTS: [&str; 5] =
-            ["PARAMETER_NAMES", "NOMINAL_PARAMETERS", "BASE_PARAMETER_NAMES", "NOMINAL_BASE_PARAMETERS", "TASK"];
+        const CONSTANTS: [&str; 8] = [
+            "PARAMETER_NAMES",
+            "NOMINAL_PARAMETERS",
+            "BASE_PARAMETER_NAMES",
+            "NOMINAL_BASE_PARAMETERS",
+            "TASK",
+            "COUPLING",
+            "COUPLING_OFFSET",
+            "ALL_JOINT_NAMES",
+        ];
         let shown = |link: Link<'_>| match link {
             Link::Function(name) => {
                 assert!(catalogue::named(name).is_some(), "{name} is no function of the module");

@@ -1,7 +1,7 @@
 //! Common part of the languages whose text is composed line by line. Lines, angles and the places of results come from the
 //! program. A language only defines how it writes an entry, a number and an operator.
 
-use super::documentation::{self, has_base_parameters, Block, Described, DescribedParameters};
+use super::documentation::{self, Block, Described, DescribedParameters};
 use super::{Language, Notes, Origin};
 use crate::catalogue::{Argument, Parameter, Quantity, ResultPart, Sizes};
 use crate::exact::Number;
@@ -213,8 +213,11 @@ const TIPS: &str = "TIPS";
 /// The constants of a named end effector.
 const OF_TIP: [&str; 3] = ["TASK_ROWS", "TASK", "COORDINATES"];
 
+/// The constants of a module with coupled joints.
+const OF_COUPLING: [&str; 4] = ["JOINTS", "ALL_JOINT_NAMES", "COUPLING", "COUPLING_OFFSET"];
+
 /// The constants of any module.
-const CONSTANTS: [&str; 19] = [
+const CONSTANTS: [&str; 23] = [
     "NAME",
     "DOF",
     "JOINT_NAMES",
@@ -224,6 +227,10 @@ const CONSTANTS: [&str; 19] = [
     "EFFORT_LIMITS",
     "ACCELERATION_LIMITS",
     "JERK_LIMITS",
+    "JOINTS",
+    "ALL_JOINT_NAMES",
+    "COUPLING",
+    "COUPLING_OFFSET",
     "TASK_ROWS",
     "TASK",
     TIPS,
@@ -257,7 +264,9 @@ pub(super) fn constants_documentation(described: &DescribedParameters, first: us
         match name {
         TIPS => "Names of the end effectors.".into(),
         "NAME" => "Name of the robot.".into(),
+        "DOF" if described.is_coupled => "Number of coordinates: of joints that do not follow others.".into(),
         "DOF" => "Number of joints.".into(),
+        "JOINT_NAMES" if described.is_coupled => "Names of the joints with a coordinate, base to tip.".into(),
         "JOINT_NAMES" => "Names of the joints, base to tip.".into(),
         "JOINT_IS_REVOLUTE" => "Whether a joint turns (q in rad) or slides (q in m).".into(),
         "POSITION_LIMITS" => "Lowest and highest joint variable, rad or m; infinite where the description gives none.".into(),
@@ -269,6 +278,10 @@ pub(super) fn constants_documentation(described: &DescribedParameters, first: us
             "Highest acceleration of planned motions, rad/s² or m/s²; infinite where the description gives none.".into()
         }
         "JERK_LIMITS" => "Highest jerk of planned motions, rad/s³ or m/s³; infinite where the description gives none.".into(),
+        "JOINTS" => "Number of joints, those that follow others included.".into(),
+        "ALL_JOINT_NAMES" => "Names of all joints, base to tip.".into(),
+        "COUPLING" => "S of the joint variables S q + c: a row for each joint, a column for each coordinate.".into(),
+        "COUPLING_OFFSET" => "c of the joint variables S q + c, rad or m.".into(),
         "TASK_ROWS" => "Number of rows of the operational space.".into(),
         "TASK" => format!(
             "Rows of the geometric Jacobian that make up the operational space: {a} {b} {c} along x y z, {d} {e} {f} about x y z, in the base frame."
@@ -296,13 +309,15 @@ pub(super) fn constants_documentation(described: &DescribedParameters, first: us
         };
         (name, blocks)
     };
-    let there = |name: &String| has_constant(name, described.base_parameters.is_some(), described.gravity_is_argument);
+    let there = |name: &String| has_constant(name, described);
     names(&described.tips).into_iter().filter(there).map(of).collect()
 }
 
 /// Whether a module has a constant.
-fn has_constant(name: &str, base_parameters: bool, gravity_is_argument: bool) -> bool {
-    (!name.contains("BASE_") || base_parameters) && (name != "NOMINAL_GRAVITY" || gravity_is_argument)
+fn has_constant(name: &str, described: &DescribedParameters) -> bool {
+    let has_base_parameters = !name.contains("BASE_") || described.base_parameters.is_some();
+    let has_gravity = name != "NOMINAL_GRAVITY" || described.gravity_is_argument;
+    has_base_parameters && has_gravity && (!OF_COUPLING.contains(&name) || described.is_coupled)
 }
 
 /// The constants of a module, in order; `first`: first index of the language.
@@ -319,6 +334,8 @@ pub(super) fn constants(module: &Module, first: usize) -> Vec<Constant> {
     };
     let position = |joint: &Joint| Value::Array(vec![number(&joint.position[0], true), number(&joint.position[1], false)]);
     let counted = |all: &[usize]| Value::Array(all.iter().map(|&one| Value::Count(one + first)).collect());
+    let coupling = module.coupling.as_ref();
+    let exact = |row: &[Number]| Value::Array(row.iter().cloned().map(Value::Number).collect());
     let of_tip = |name: &str| {
         let of = |tip: &EndEffector| [Value::Count(tip.task.len()), counted(&tip.task), counted(&tip.coordinates)];
         let all = module.tips.iter().flat_map(|tip| OF_TIP.map(|constant| tip.constant(constant)).into_iter().zip(of(tip)));
@@ -336,6 +353,10 @@ pub(super) fn constants(module: &Module, first: usize) -> Vec<Constant> {
             "EFFORT_LIMITS" => joints(&|joint| number(&joint.effort, false)),
             "ACCELERATION_LIMITS" => joints(&|joint| number(&joint.acceleration, false)),
             "JERK_LIMITS" => joints(&|joint| number(&joint.jerk, false)),
+            "JOINTS" => Value::Count(coupling.map_or(module.joints.len(), |coupling| coupling.names.len())),
+            "ALL_JOINT_NAMES" => Value::Array(coupling.iter().flat_map(|coupling| &coupling.names).map(text).collect()),
+            "COUPLING" => Value::Array(coupling.iter().flat_map(|coupling| &coupling.factors).map(|row| exact(row)).collect()),
+            "COUPLING_OFFSET" => coupling.map_or(Value::Array(Vec::new()), |coupling| exact(&coupling.offsets)),
             "TASK_ROWS" => Value::Count(module.task.len()),
             "TASK" => counted(&module.task),
             "PARAMETERS" => Value::Count(module.parameters.len()),
@@ -348,9 +369,9 @@ pub(super) fn constants(module: &Module, first: usize) -> Vec<Constant> {
         }),
         name,
     };
-    let tips: Vec<String> = module.tips.iter().map(|tip| tip.name.clone()).collect();
-    let there = |name: &String| has_constant(name, has_base_parameters(module), module.gravity_is_argument);
-    names(&tips).into_iter().filter(there).map(of).collect()
+    let described = DescribedParameters::of(module);
+    let there = |name: &String| has_constant(name, &described);
+    names(&described.tips).into_iter().filter(there).map(of).collect()
 }
 
 /// The head of a file as comment lines: its origin, and the functions that the module lacks.

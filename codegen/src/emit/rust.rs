@@ -199,6 +199,7 @@ fn constants(module: &Module) -> TokenStream {
         tips => end_effectors(tips, &documented),
     };
     let same_for_all = functions_of_parameters(module);
+    let coupling = coupling_constants(module, &documented);
     let base = base_constants(module, &documented);
     let structures = structures(module, false);
     quote! {
@@ -218,6 +219,7 @@ fn constants(module: &Module) -> TokenStream {
         #[allow(dead_code, clippy::all)]
         pub const POSITION_LIMITS: [[Real; 2]; DOF] = [#(#position),*];
         #(#sizes)*
+        #coupling
         #tasks
         #of_parameters
         #[allow(dead_code)]
@@ -277,6 +279,34 @@ fn documented_constants(module: &Module) -> Vec<(String, Vec<String>)> {
 fn documentation_of(all: &[(String, Vec<String>)], constant: &str) -> TokenStream {
     let lines = all.iter().find(|(name, _)| *name == constant).map_or(&[][..], |(_, lines)| lines);
     quote!(#(#[doc = #lines])*)
+}
+
+/// The coupling of joints.
+fn coupling_constants(module: &Module, documented: &[(String, Vec<String>)]) -> Option<TokenStream> {
+    let coupling = module.coupling.as_ref()?;
+    let said = |constant: &str| documentation_of(documented, constant);
+    let [of_count, of_names, of_factors, of_offsets] = ["JOINTS", "ALL_JOINT_NAMES", "COUPLING", "COUPLING_OFFSET"].map(said);
+    let (count, names) = (usize_literal(coupling.names.len()), &coupling.names);
+    let numbers = |row: &[Number]| row.iter().map(|value| literal(value, module.scalar)).collect::<Vec<_>>();
+    let rows = coupling.factors.iter().map(|row| {
+        let row = numbers(row);
+        quote!([#(#row),*])
+    });
+    let offsets = numbers(&coupling.offsets);
+    Some(quote! {
+        #of_count
+        #[allow(dead_code)]
+        pub const JOINTS: usize = #count;
+        #of_names
+        #[allow(dead_code)]
+        pub const ALL_JOINT_NAMES: [&str; JOINTS] = [#(#names),*];
+        #of_factors
+        #[allow(dead_code, clippy::all)]
+        pub const COUPLING: [[Real; DOF]; JOINTS] = [#(#rows),*];
+        #of_offsets
+        #[allow(dead_code, clippy::all)]
+        pub const COUPLING_OFFSET: [Real; JOINTS] = [#(#offsets),*];
+    })
 }
 
 /// The rows of a task; `tip` is what its names begin with.

@@ -70,6 +70,7 @@ pub(super) fn derived(model: &Model, item: Item, reading: Reading) -> Result<Der
 /// `None` for the known torque of a base parameter set: its combinations hold the description's numbers.
 fn symbolic_regressor(model: &Model, quantity: &Quantity) -> Option<Derivation> {
     let (manipulator, vector) = (&model.manipulator, &model.parameters);
+    let sizes = model.sizes_with(0);
     let mut pool = Pool::new(model.field.clone());
     let arm = Arm::new(&mut pool, manipulator, View::Symbolic);
     let motion = Motion::with_reference(&mut pool, &arm);
@@ -100,6 +101,9 @@ fn symbolic_regressor(model: &Model, quantity: &Quantity) -> Option<Derivation> 
             })
             .collect()
     };
+    // Of the regressor a row for each joint, of the rest an entry.
+    let entries = quantity.of_coordinates(&mut pool, &arm, &sizes, entries);
+    let (pool, entries) = arm.in_coordinates(pool, entries);
     Some(Derivation { pool, entries, method: "derivatives by the names", parallel: Vec::new() })
 }
 

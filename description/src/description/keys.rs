@@ -48,6 +48,8 @@ pub(super) enum Shape {
     Pose,
     /// A mapping of free names to expressions.
     Parameters,
+    /// A mapping of names of joints to factors.
+    Factors,
     /// A mapping of the keys of `units` to units.
     Units,
     /// A list of joints, whose keys depend on the convention.
@@ -157,6 +159,18 @@ const PARENT: Entry = optional(
     "The joint whose link carries this joint, or base; if left out, the joint before it in the list.",
 );
 const MOUNT: Entry = optional("mount", Shape::Pose, "The frame that the row starts from, in the link frame of parent.");
+const FOLLOWS: Entry = optional(
+    "follows",
+    Shape::Factors,
+    "Joints with factors: the joint's variable is the sum of factor · variable, plus offset. The joint has no coordinate of its own.",
+);
+const ADDS: Entry = optional(
+    "adds",
+    Shape::Factors,
+    "Joints with factors: the joint's variable is its own coordinate, plus the sum of factor · variable, plus offset.",
+);
+const OFFSET_OF_JOINT: Entry =
+    optional("offset", Shape::Expression(POSITION), "Constant that follows or adds adds to the joint's variable; 0 if left out.");
 const LIMITS_OF_JOINT: Entry =
     optional("limits", Shape::Mapping("limits", LIMITS), "Limits of the joint: constants of the module, which no equation uses.");
 const LINK_OF_JOINT: Entry =
@@ -178,6 +192,9 @@ pub(super) const JOINT: &[Entry] = &[
     TYPE,
     PARENT,
     MOUNT,
+    FOLLOWS,
+    ADDS,
+    OFFSET_OF_JOINT,
     required("a", "a: 0.5", Shape::Expression(LENGTH), "Length a of the row."),
     required("alpha", "alpha: pi/2", Shape::Expression(ANGLE), "Twist alpha of the row."),
     required("d", "d: 0", Shape::Expression(LENGTH), "Offset d of the row; a prismatic joint adds its variable."),
@@ -195,6 +212,9 @@ pub(super) const URDF_JOINT: &[Entry] = &[
     TYPE,
     PARENT,
     MOUNT,
+    FOLLOWS,
+    ADDS,
+    OFFSET_OF_JOINT,
     optional(
         "origin",
         Shape::Pose,

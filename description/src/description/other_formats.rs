@@ -86,7 +86,7 @@ pub(super) const OTHER_PLACES: &[(&str, &str, &str)] = &[
     ("axis", "theta", ROW),
     ("stiffness", "spring", "a spring stands in a mapping of its own: `spring: {stiffness: ..., rest: ...}`"),
     ("springref", "spring", "MuJoCo's `springref` is `spring: {stiffness: ..., rest: ...}` here"),
-    ("offset", "theta", "the offset of a joint variable is `theta` of a revolute joint, `d` of a prismatic one"),
+    ("mimic", "follows", "a joint that mimics another one is written `follows: {LEADER: MULTIPLIER}`, and `offset`"),
     ("sigma", "type", "RTB's `sigma` is `type: revolute` (0) or `type: prismatic` (1)"),
     ("child", "type", "a joint moves its own `link`; where that branches off, `parent` names the joint that carries it"),
     ("a", "origin", FRAMES),

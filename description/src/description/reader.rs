@@ -8,9 +8,9 @@ use super::other_formats::{OTHER_NAMES, OTHER_PLACES};
 use super::units::{UnitKey, KEYS};
 use super::{
     AttachedDescription, BodyDescription, Convention, FrictionDescription, InertiaDescription, JointDescription,
-    LimitsDescription, MotorDescription, NamedUnit, ParameterDescription, PoseDescription, PoseElement, PosturesDescription,
-    RegressorDescription, RobotDescription, RotationDescription, SpringDescription, StribeckDescription, TipDescription, Value,
-    INERTIA_ELEMENTS,
+    LeadersDescription, LimitsDescription, MotorDescription, NamedUnit, ParameterDescription, PoseDescription, PoseElement,
+    PosturesDescription, RegressorDescription, RobotDescription, RotationDescription, SpringDescription, StribeckDescription,
+    TipDescription, Value, INERTIA_ELEMENTS,
 };
 use crate::diagnostic::{Code, Diagnostics};
 use crate::document::reader::{first_key, optional, Fields, Reader};
@@ -141,6 +141,9 @@ impl Reader<'_> {
             }),
             parent: fields.get("parent").and_then(|(key, node)| self.word(node, key, "parent")),
             mount: fields.get("mount").and_then(|(key, node)| self.pose(node, key, "mount")),
+            follows: fields.get("follows").and_then(|(key, node)| self.leaders(node, key, "follows")),
+            adds: fields.get("adds").and_then(|(key, node)| self.leaders(node, key, "adds")),
+            offset: self.field(&fields, "offset"),
             a: self.field(&fields, "a"),
             alpha: self.field(&fields, "alpha"),
             d: self.field(&fields, "d"),
@@ -178,6 +181,21 @@ impl Reader<'_> {
             armature: self.field(&fields, "armature"),
             span,
         })
+    }
+
+    /// Joints with factors.
+    fn leaders(&mut self, node: &Node, key: Span, name: &str) -> Option<LeadersDescription> {
+        let help = format!("write joints with factors: `{name}: {{finger: 1}}`");
+        let Kind::Mapping(entries) = &node.kind else {
+            self.wrong_kind(node, key, name, "a mapping of joints to factors", &help);
+            return None;
+        };
+        if entries.is_empty() {
+            self.report(Code::EmptyList, node.span, format!("`{name}` names no joint"), "empty", help);
+            return None;
+        }
+        let leader = |(name, factor): &(Spanned<String>, Node)| (name.clone(), self.value(factor, name.span, &name.value));
+        Some(LeadersDescription { key, leaders: entries.iter().map(leader).collect() })
     }
 
     fn body(&mut self, node: &Node, key: Span, what: &str, keys: &'static [Entry]) -> Option<BodyDescription> {

@@ -34,7 +34,13 @@ pub fn schema() -> Value {
     for (name, rows, of_urdf) in [("row", JOINT, false), ("frame", URDF_JOINT, true)] {
         let conventions = CONVENTIONS.iter().filter(|(_, convention)| (*convention == Convention::Urdf) == of_urdf);
         let words: Vec<&str> = conventions.map(|(word, _)| *word).collect();
-        let joint = mapping(rows, &mut definitions);
+        let mut joint = mapping(rows, &mut definitions);
+        joint["not"] = json!({ "required": ["follows", "adds"] });
+        let of_rates = ["load", "stribeck"].map(|key| json!({ "required": [key] }));
+        joint["dependencies"] = json!({
+            "offset": { "anyOf": [{ "required": ["follows"] }, { "required": ["adds"] }] },
+            "follows": { "properties": { "friction": { "not": { "anyOf": of_rates } } } },
+        });
         definitions.insert(name.into(), joint);
         rules.push(json!({
             "if": { "properties": { "convention": { "enum": words } }, "required": ["convention"] },
@@ -145,6 +151,10 @@ fn property(entry: &Entry, definitions: &mut Map<String, Value>) -> Value {
         Shape::List(name, keys) => json!({ "type": "array", "items": define(name, keys) }),
         Shape::Pose => json!({ "$ref": reference("poses") }),
         Shape::Parameters => json!({ "type": "object", "propertyNames": name, "additionalProperties": number }),
+        Shape::Factors => {
+            let factor = json!({ "allOf": [number], "not": { "const": 0 } });
+            json!({ "type": "object", "minProperties": 1, "propertyNames": name, "additionalProperties": factor })
+        }
         Shape::Units => {
             let unit = |examples: &str, si: &str| json!({ "type": "string", "description": format!("Units: {examples}. Without it: {si}.") });
             let keys = KEYS.iter().map(|key| (key.name.to_owned(), unit(key.examples, key.si))).collect::<Map<_, _>>();

@@ -22,6 +22,10 @@ pub enum Role {
     CentreOfMass,
     /// An element of an inertia tensor.
     Inertia,
+    /// The factor of a joint that another one follows.
+    Factor,
+    /// The constant that is added to followed variables.
+    Offset,
     /// A limit.
     Limit,
     /// A gear ratio.
@@ -61,6 +65,8 @@ impl Role {
             Role::Mass => "a mass",
             Role::CentreOfMass => "a centre of mass",
             Role::Inertia => "an inertia",
+            Role::Factor => "the factor of a followed joint",
+            Role::Offset => "the offset of a joint variable",
             Role::Limit => "a limit",
             Role::Ratio => "a gear ratio",
             Role::RotorInertia => "a rotor inertia",
@@ -193,6 +199,12 @@ macro_rules! walk {
                     let [position, rate, effort, armature] =
                         if slides { [Length, Velocity, Force, Mass] } else { [Angle, AngularVelocity, Torque, RotorInertia] };
                     $pose(to, & $($mutable)? joint.mount);
+                    for leaders in [& $($mutable)? joint.follows, & $($mutable)? joint.adds].into_iter().flatten() {
+                        for (_, factor) in & $($mutable)? leaders.leaders {
+                            $one(to, Role::Factor, Fixed, factor);
+                        }
+                    }
+                    $one(to, Role::Offset, position, & $($mutable)? joint.offset);
                     $one(to, Role::Length, Length, & $($mutable)? joint.a);
                     $one(to, Role::Angle, Angle, & $($mutable)? joint.alpha);
                     $one(to, Role::Length, Length, & $($mutable)? joint.d);

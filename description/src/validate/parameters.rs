@@ -92,6 +92,7 @@ pub(super) enum Reason {
     Root,
     Angle,
     Axis,
+    Coupling,
 }
 
 impl Reason {
@@ -102,6 +103,7 @@ impl Reason {
             Reason::Root => "through a root",
             Reason::Angle => "through an angle",
             Reason::Axis => "through the direction of an axis",
+            Reason::Coupling => "through the coupling of a joint",
         }
     }
 }
@@ -156,6 +158,7 @@ impl<'d> Parameters<'d> {
             match role {
                 Role::Angle => parameters.force(expression, expression.span, Reason::Angle),
                 Role::Axis => parameters.force(expression, expression.span, Reason::Axis),
+                Role::Factor | Role::Offset => parameters.force(expression, expression.span, Reason::Coupling),
                 _ => {}
             }
             // A limit is a number anyway, and so is a gain.

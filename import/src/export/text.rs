@@ -72,6 +72,9 @@ fn motion_lines(motion: &Motion) -> Vec<String> {
         let newer: String = newer.iter().filter_map(|(name, value)| Some(format!(" {name}=\"{}\"", value.as_ref()?))).collect();
         lines.push(format!("<limit {position}effort=\"{effort}\" velocity=\"{velocity}\"{newer}/>"));
     }
+    if let Some([leader, factor, offset]) = &motion.mimic {
+        lines.push(format!("<mimic joint=\"{}\" multiplier=\"{factor}\" offset=\"{offset}\"/>", escaped(leader)));
+    }
     let friction = [("damping", &motion.viscous), ("friction", &motion.coulomb)];
     let given: Vec<String> =
         friction.iter().filter_map(|(name, value)| Some(format!("{name}=\"{}\"", value.as_ref()?))).collect();

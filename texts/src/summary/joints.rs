@@ -6,7 +6,7 @@ use armgen_codegen::description::{
 };
 use armgen_codegen::exact::{Number, Polynomial};
 use armgen_codegen::kinds::JointKind;
-use armgen_codegen::manipulator::{Joint, Manipulator};
+use armgen_codegen::manipulator::{Joint, JointVariable, Manipulator};
 use armgen_codegen::source::Source;
 
 use super::{decimal, digits};
@@ -107,6 +107,32 @@ fn pose(source: &Source, pose: &PoseDescription) -> String {
         translation.into_iter().chain(rotation).collect::<Vec<_>>().join(" ")
     });
     elements.filter(|text| !text.is_empty()).collect::<Vec<_>>().join(", ")
+}
+
+/// The variables of coupled joints as sums over coordinates, a sentence each.
+pub(super) fn couplings(manipulator: &Manipulator) -> Vec<String> {
+    let Some(coupling) = &manipulator.coupling else { return Vec::new() };
+    let coordinate = |a: usize| &manipulator.joints[coupling.coordinates[a]].name;
+    let sentence = |(i, variable): (usize, &JointVariable)| {
+        let own = &manipulator.joints[i].name;
+        let is_plain = matches!(variable.factors.as_slice(), [(a, factor)] if coupling.coordinates[*a] == i && factor.is_one());
+        if is_plain && variable.offset.is_zero() {
+            return None;
+        }
+        let term = |(a, factor): &(usize, Number)| match (factor.is_one(), (-factor).is_one()) {
+            (true, _) => coordinate(*a).clone(),
+            (_, true) => format!("-{}", coordinate(*a)),
+            _ => format!("{} {}", decimal(factor), coordinate(*a)),
+        };
+        let mut terms: Vec<String> = variable.factors.iter().map(term).collect();
+        if !variable.offset.is_zero() || terms.is_empty() {
+            terms.push(decimal(&variable.offset));
+        }
+        // The name of a joint with a coordinate is that of the coordinate.
+        let of = if coupling.coordinates.contains(&i) { "variable of " } else { "" };
+        Some(format!("{of}{own} = {}", terms.join(" + ").replace("+ -", "- ")))
+    };
+    coupling.variables.iter().enumerate().filter_map(sentence).collect()
 }
 
 /// The limits of the joints, angles also in degrees; `None` without limits.

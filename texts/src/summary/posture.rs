@@ -96,7 +96,10 @@ impl Axis {
 
 impl Posture {
     fn at_zero(manipulator: &Manipulator) -> Posture {
-        Frames::of(manipulator).at(&vec![0.0; manipulator.dof()])
+        let variables = manipulator.coupling.iter().flat_map(|coupling| &coupling.variables);
+        let mut q: Vec<f64> = variables.map(|variable| variable.offset.to_f64()).collect();
+        q.resize(manipulator.joints.len(), 0.0);
+        Frames::of(manipulator).at(&q)
     }
 
     /// Mass and centre of mass of bodies in a frame, in the base frame; none without mass.
@@ -128,7 +131,7 @@ impl Posture {
     fn gravity(&self, manipulator: &Manipulator, i: usize) -> f64 {
         let g0 = Vector3::from(manipulator.gravity.each_ref().map(|x| number(manipulator, x)));
         let Axis { direction, point } = &self.axes[i];
-        let moved = (i..manipulator.dof()).filter(|&link| is_moved_by(manipulator, link, i));
+        let moved = (i..manipulator.joints.len()).filter(|&link| is_moved_by(manipulator, link, i));
         let terms = moved.flat_map(|link| self.masses(manipulator, link)).map(|(mass, com)| match manipulator.joints[i].kind {
             JointKind::Revolute => mass * g0.dot(&direction.cross(&(com - point))),
             JointKind::Prismatic => mass * g0.dot(direction),
@@ -160,7 +163,8 @@ pub(super) fn distances(manipulator: &Manipulator) -> Vec<[Option<f64>; 2]> {
     let turns = |i: usize| manipulator.joints[i].kind == JointKind::Revolute;
     let of = |i: usize| {
         let axis = &posture.axes[i];
-        let next = (i + 1..manipulator.dof()).find(|&next| manipulator.joints[next].parent.is_some_and(|link| link.index() == i));
+        let next =
+            (i + 1..manipulator.joints.len()).find(|&next| manipulator.joints[next].parent.is_some_and(|link| link.index() == i));
         let next = match next {
             Some(next) => turns(next).then(|| axis.to(&posture.axes[next])),
             None => (manipulator.tip.index() == i).then(|| axis.from(&posture.flange.translation.vector.into())),
@@ -170,7 +174,7 @@ pub(super) fn distances(manipulator: &Manipulator) -> Vec<[Option<f64>; 2]> {
             false => [None, None],
         }
     };
-    (0..manipulator.dof()).map(of).collect()
+    (0..manipulator.joints.len()).map(of).collect()
 }
 
 /// The frames of the links at q = 0.
@@ -199,6 +203,10 @@ pub(super) fn frames(manipulator: &Manipulator) -> String {
 /// Where the axes and centres of mass are at q = 0, and what gravity asks of each joint; none where nothing has mass.
 pub(super) fn carried(manipulator: &Manipulator) -> Option<String> {
     use Align::{Left, Right};
+    // A drive holds what all joints that move with it carry: the function `gravity` has that.
+    if manipulator.coupling.is_some() {
+        return None;
+    }
     let posture = Posture::at_zero(manipulator);
     let mut carried = Table::new([("at q = 0", Left), ("joint axis", Left), ("centre of mass (m)", Left), ("gravity", Right)]);
     let mut weak = Vec::new();

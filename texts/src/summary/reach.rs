@@ -20,6 +20,9 @@ const ROUNDS: usize = 30;
 
 /// The reach within the limits.
 pub(super) fn in_words(manipulator: &Manipulator) -> String {
+    if manipulator.coupling.is_some() {
+        return "of an arm with coupled joints it is not looked for".into();
+    }
     let endless = |joint: &&Joint| joint.kind == JointKind::Prismatic && joint.limits.position.is_none();
     if let Some(slide) = manipulator.joints.iter().find(endless) {
         return format!("without bound: `{}` slides and has no limits", slide.name);

@@ -1,13 +1,18 @@
 //! The arm with exact constants and parameter values.
 
+use std::borrow::Cow;
+use std::cmp::Ordering;
+
 use armgen_description::exact::{Number, Polynomial};
 use armgen_description::kinds::JointKind;
 use armgen_description::manipulator::{self, LinkId, Manipulator};
 
+use super::state::State;
 use super::vector::{add, dot, product, scale, sub, transpose, Matrix, Vector};
 use crate::arithmetic::Arithmetic;
 use crate::element::Element;
 use crate::formula::Formula;
+use crate::program::Inputs;
 
 /// The pose of a frame in another.
 #[derive(Clone, Debug)]
@@ -87,6 +92,30 @@ pub struct Joint<E> {
     pub armature: E,
 }
 
+/// The variable of a joint as a sum over coordinates.
+#[derive(Clone, Debug)]
+pub struct Variable<E> {
+    /// Coordinates with their factors.
+    pub factors: Vec<(usize, E)>,
+    /// The same factors as integers, of a joint that turns.
+    pub turns: Vec<(usize, i64)>,
+    /// 1 or -1, the sign of the first factor.
+    pub sign: E,
+    /// The constant part.
+    pub offset: E,
+    /// Its sine and cosine, of a joint that turns; else those of 0.
+    pub turn: (E, E),
+}
+
+/// Joint variables as sums over coordinates.
+#[derive(Clone, Debug)]
+pub struct Coupling<E> {
+    /// The joints with a coordinate.
+    pub coordinates: Vec<usize>,
+    /// The variable of each joint.
+    pub variables: Vec<Variable<E>>,
+}
+
 /// An end effector.
 #[derive(Clone, Debug)]
 pub struct Tip<E> {
@@ -113,6 +142,8 @@ pub struct Arm<E> {
     pub gravity: Vector<E>,
     /// The end effectors: those with names, or the only one.
     pub tips: Vec<Tip<E>>,
+    /// The coupling of joints; `None` if the variable of each joint is its coordinate.
+    pub coupling: Option<Coupling<E>>,
     /// 0.
     pub zero: E,
     /// 1.
@@ -193,6 +224,29 @@ impl<K: Arithmetic> Builder<'_, K> {
             });
         }
         all
+    }
+
+    fn coupling(&self, coupling: &manipulator::Coupling) -> Option<Coupling<K::Element>> {
+        let mut variables = Vec::new();
+        for variable in &coupling.variables {
+            let mut factors = Vec::new();
+            for (a, factor) in &variable.factors {
+                factors.push((*a, self.number(factor)?));
+            }
+            // Validation takes whole numbers below 100 alone.
+            let turns = variable.factors.iter().map(|(a, factor)| (*a, factor.to_f64() as i64));
+            let (turns, turn) = match &variable.turn {
+                Some([sine, cosine]) => {
+                    let circle = |number| self.arithmetic.coordinate(&formula(number));
+                    (turns.collect(), (circle(sine)?, circle(cosine)?))
+                }
+                None => (Vec::new(), (self.arithmetic.integer(0), self.arithmetic.integer(1))),
+            };
+            let is_negative = variable.factors.first().is_some_and(|(_, factor)| factor.sign() == Ordering::Less);
+            let sign = self.arithmetic.integer(if is_negative { -1 } else { 1 });
+            variables.push(Variable { factors, turns, sign, offset: self.number(&variable.offset)?, turn });
+        }
+        Some(Coupling { coordinates: coupling.coordinates.clone(), variables })
     }
 
     fn optional(&self, polynomial: Option<&Polynomial>) -> Option<K::Element> {
@@ -298,10 +352,15 @@ impl<E: Element> Arm<E> {
             let rows = named.task.iter().map(|row| row.index()).collect();
             tips.push(tip(Some(&named.name), named.joint, &named.tool, named.payload.as_ref(), rows)?);
         }
+        let coupling = match &manipulator.coupling {
+            Some(coupling) => Some(builder.coupling(coupling)?),
+            None => None,
+        };
         Some(Arm {
             joints,
             gravity: builder.vector(&manipulator.gravity)?,
             tips,
+            coupling,
             zero: arithmetic.integer(0),
             one: arithmetic.integer(1),
         })
@@ -360,6 +419,20 @@ impl<E: Element> Arm<E> {
                     task: tip.task.clone(),
                 })
                 .collect(),
+            coupling: self.coupling.as_ref().map(|coupling| Coupling {
+                coordinates: coupling.coordinates.clone(),
+                variables: coupling
+                    .variables
+                    .iter()
+                    .map(|variable| Variable {
+                        factors: variable.factors.iter().map(|(a, factor)| (*a, f(factor))).collect(),
+                        turns: variable.turns.clone(),
+                        sign: f(&variable.sign),
+                        offset: f(&variable.offset),
+                        turn: (f(&variable.turn.0), f(&variable.turn.1)),
+                    })
+                    .collect(),
+            }),
             zero: f(&self.zero),
             one: f(&self.one),
         }
@@ -374,9 +447,84 @@ impl<E: Element> Arm<E> {
         self
     }
 
-    /// Number of joints.
+    /// Number of coordinates.
     pub fn dof(&self) -> usize {
-        self.joints.len()
+        self.coupling.as_ref().map_or(self.joints.len(), |coupling| coupling.coordinates.len())
+    }
+
+    /// The joint of a coordinate.
+    pub fn joint_of(&self, coordinate: usize) -> usize {
+        self.coupling.as_ref().map_or(coordinate, |coupling| coupling.coordinates[coordinate])
+    }
+
+    /// The coordinates that move a joint, with their factors.
+    pub fn row(&self, joint: usize) -> Vec<(usize, E)> {
+        match &self.coupling {
+            Some(coupling) => coupling.variables[joint].factors.clone(),
+            None => vec![(joint, self.one.clone())],
+        }
+    }
+
+    /// S x: rates of joints from those of coordinates.
+    pub fn of_joints(&self, x: &[E]) -> Vec<E> {
+        let Some(coupling) = &self.coupling else { return x.to_vec() };
+        let sum = |variable: &Variable<E>| {
+            variable.factors.iter().fold(self.zero.clone(), |sum, (a, factor)| sum.plus(&factor.times(&x[*a])))
+        };
+        coupling.variables.iter().map(sum).collect()
+    }
+
+    /// S p + c.
+    pub fn joint_variables(&self, p: &[E]) -> Vec<E> {
+        let mut q = self.of_joints(p);
+        for (q, variable) in q.iter_mut().zip(self.coupling.iter().flat_map(|coupling| &coupling.variables)) {
+            *q = q.plus(&variable.offset);
+        }
+        q
+    }
+
+    /// S' x: torques of coordinates from those of joints, by virtual work.
+    pub fn of_coordinates(&self, x: Vec<E>) -> Vec<E> {
+        let Some(coupling) = &self.coupling else { return x };
+        let mut sums = vec![self.zero.clone(); coupling.coordinates.len()];
+        for (variable, x) in coupling.variables.iter().zip(&x) {
+            for (a, factor) in &variable.factors {
+                sums[*a] = sums[*a].plus(&factor.times(x));
+            }
+        }
+        sums
+    }
+
+    /// The state with an entry for each joint instead of each coordinate; torques stay those of coordinates.
+    pub fn state_of_joints<'s>(&self, state: &'s State<E>) -> Cow<'s, State<E>> {
+        let Some(coupling) = &self.coupling else { return Cow::Borrowed(state) };
+        let angle = |variable: &Variable<E>| {
+            let (s, c) = state.sine_cosine(&variable.turns);
+            let (t, d) = &variable.turn;
+            (s.times(d).plus(&c.times(t)), c.times(d).minus(&s.times(t)))
+        };
+        // Of one coordinate; validation refuses dry friction of others.
+        let sign = |variable: &Variable<E>| match variable.factors.as_slice() {
+            [(a, _)] => state.signs[*a].times(&variable.sign),
+            _ => self.zero.clone(),
+        };
+        let own = |joint: usize, values: &[E], otherwise: &E| {
+            let place = coupling.coordinates.iter().position(|&of| of == joint);
+            place.map_or_else(|| otherwise.clone(), |a| values[a].clone())
+        };
+        let each = |of: &dyn Fn(usize) -> E| (0..self.joints.len()).map(of).collect::<Vec<E>>();
+        Cow::Owned(State {
+            angles: coupling.variables.iter().map(angle).collect(),
+            q: self.joint_variables(&state.q),
+            dq: self.of_joints(&state.dq),
+            ddq: self.of_joints(&state.ddq),
+            dqr: self.of_joints(&state.dqr),
+            ddqr: self.of_joints(&state.ddqr),
+            signs: coupling.variables.iter().map(sign).collect(),
+            stribeck: each(&|joint| own(joint, &state.stribeck, &self.zero)),
+            stribeck_velocities: each(&|joint| own(joint, &state.stribeck_velocities, &self.one)),
+            ..state.clone()
+        })
     }
 
     /// ½.

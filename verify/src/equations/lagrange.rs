@@ -70,7 +70,7 @@ fn inertia_by<E: Element, R: Element>(arm: &Arm<E>, state: &State<E>, times: &dy
     for body in bodies(arm, &pose) {
         let Some(link) = body.link else { continue };
         let jacobian = pose.jacobian(Some(link), &body.com);
-        let columns = &pose.ancestors[link];
+        let columns = &pose.moving[link];
         if !body.mass.is_zero() {
             let weighted: Vec<Vector<E>> = jacobian.iter().map(|(v, _)| scale(&body.mass, v)).collect();
             accumulate(columns, &|i, j| dot(&weighted[i], &jacobian[j].0));
@@ -81,18 +81,25 @@ fn inertia_by<E: Element, R: Element>(arm: &Arm<E>, state: &State<E>, times: &dy
         }
     }
     for (i, joint) in arm.joints.iter().enumerate() {
-        accumulate(&[i], &|_, _| times(&joint.armature, &arm.one));
+        let own = arm.row(i);
+        let mut columns: Vec<usize> = own.iter().map(|(a, _)| *a).collect();
+        let mut rate = vec![arm.zero.clone(); n];
+        own.iter().for_each(|(a, factor)| rate[*a].clone_from(factor));
+        accumulate(&columns, &|i, j| times(&joint.armature.times(&rate[i]), &rate[j]));
         let Some(motor) = &joint.motor else { continue };
         let mut rotor_speed = vec![arm.zero.clone(); n];
-        let mut columns = vec![i];
         if let Some(parent) = joint.parent {
             let axis = pose.links[parent].direction(&motor.axis);
             for (j, (_, w)) in pose.jacobian(Some(parent), &pose.links[parent].origin).iter().enumerate() {
                 rotor_speed[j] = vector::dot(&axis, w);
             }
-            columns.extend(&pose.ancestors[parent]);
+            columns.extend(&pose.moving[parent]);
+            columns.sort_unstable();
+            columns.dedup();
         }
-        rotor_speed[i] = rotor_speed[i].plus(&motor.ratio);
+        for (a, factor) in &own {
+            rotor_speed[*a] = rotor_speed[*a].plus(&motor.ratio.times(factor));
+        }
         accumulate(&columns, &|i, j| times(&motor.inertia.times(&rotor_speed[i]), &rotor_speed[j]));
     }
     for i in 0..n {
@@ -152,8 +159,9 @@ pub fn potential_energy<E: Element>(arm: &Arm<E>, state: &State<E>) -> E {
 
 /// Σ ½ k (q - rest)² of the springs, for a given stiffness.
 pub fn spring_energy<E: Element>(arm: &Arm<E>, state: &State<E>, stiffness: impl Fn(usize, &Joint<E>) -> E) -> E {
+    let q = arm.joint_variables(&state.q);
     let twice = arm.joints.iter().enumerate().fold(arm.zero.clone(), |sum, (i, joint)| {
-        let away = state.q[i].minus(&joint.rest);
+        let away = q[i].minus(&joint.rest);
         sum.plus(&stiffness(i, joint).times(&away).times(&away))
     });
     twice.times(&arm.half())
@@ -161,7 +169,8 @@ pub fn spring_energy<E: Element>(arm: &Arm<E>, state: &State<E>, stiffness: impl
 
 /// The torques of springs, k (q - rest).
 pub fn spring_torques<E: Element>(arm: &Arm<E>, q: &[E]) -> Vec<E> {
-    arm.joints.iter().zip(q).map(|(joint, q)| joint.stiffness.times(&q.minus(&joint.rest))).collect()
+    let torques = arm.joints.iter().zip(arm.joint_variables(q)).map(|(joint, q)| joint.stiffness.times(&q.minus(&joint.rest)));
+    arm.of_coordinates(torques.collect())
 }
 
 /// g(q) = ∂U/∂q.
@@ -174,8 +183,10 @@ pub fn gravity<E: Element>(arm: &Arm<E>, state: &State<E>) -> Vec<E> {
 /// F_i = (k_r² F_m + F_v + F_3 dq_i²) rate_i + (F_c + F_s exp(-|dq_i| / v)) sign_i + F_0, with the drawn values of signs and exponentials. The
 /// cubic term uses `rates` for one of its factors.
 pub fn friction<E: Element>(arm: &Arm<E>, state: &State<E>, rates: &[E]) -> Vec<E> {
-    let State { dq, signs, stribeck, .. } = state;
-    arm.joints
+    let (state, rates) = (arm.state_of_joints(state), arm.of_joints(rates));
+    let State { dq, signs, stribeck, .. } = &*state;
+    let torques = arm
+        .joints
         .iter()
         .enumerate()
         .map(|(i, joint)| {
@@ -187,7 +198,8 @@ pub fn friction<E: Element>(arm: &Arm<E>, state: &State<E>, rates: &[E]) -> Vec<
             let dry = joint.coulomb.plus(&joint.stribeck.times(&stribeck[i]));
             viscous.times(&rates[i]).plus(&dry.times(&signs[i])).plus(&joint.offset).plus(&cubic)
         })
-        .collect()
+        .collect();
+    arm.of_coordinates(torques)
 }
 
 /// Whether any joint has load-dependent friction.
@@ -197,8 +209,8 @@ pub fn has_load_friction<E: Element>(arm: &Arm<E>) -> bool {
 
 /// F_l |g_i| sign_i with |g| = sign(g) g; `None` if no joint has it.
 pub fn load_friction<E: Element>(arm: &Arm<E>, state: &State<E>, g: &[E]) -> Option<Vec<E>> {
-    let of_joint = |((joint, sign), g): ((&Joint<E>, &E), &E)| joint.load.times(&g.sign().times(g)).times(sign);
-    has_load_friction(arm).then(|| arm.joints.iter().zip(&state.signs).zip(g).map(of_joint).collect())
+    let of_joint = |(a, (sign, g)): (usize, (&E, &E))| arm.joints[arm.joint_of(a)].load.times(&g.sign().times(g)).times(sign);
+    has_load_friction(arm).then(|| state.signs.iter().zip(g).enumerate().map(of_joint).collect())
 }
 
 /// M v.

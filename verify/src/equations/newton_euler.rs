@@ -61,9 +61,9 @@ pub fn body<E: Element>(ten: &[E]) -> Option<Body<E>> {
 /// Rates and accelerations of a motion, and the acceleration of gravity.
 #[derive(Clone, Debug)]
 pub struct Motion<E> {
-    /// Joint rates.
+    /// Rates of coordinates.
     pub rates: Vec<E>,
-    /// Joint accelerations.
+    /// Accelerations of coordinates.
     pub accelerations: Vec<E>,
     /// Acceleration of gravity, base frame.
     pub gravity: Vector<E>,
@@ -105,6 +105,8 @@ pub enum Carrier {
 impl<'a, E: Element> ArmMotion<'a, E> {
     /// Velocities and accelerations of all links, base to tip.
     pub fn new(arm: &'a Arm<E>, pose: &'a Pose<E>, motion: Motion<E>) -> ArmMotion<'a, E> {
+        let (rates, accelerations) = (arm.of_joints(&motion.rates), arm.of_joints(&motion.accelerations));
+        let motion = Motion { rates, accelerations, ..motion };
         let mut links: Vec<LinkMotion<E>> = Vec::new();
         for (i, joint) in arm.joints.iter().enumerate() {
             let nothing = || arm.nothing();
@@ -198,7 +200,12 @@ impl<'a, E: Element> ArmMotion<'a, E> {
 
     /// The torques of the whole arm, without friction.
     pub fn torques(&self) -> Vec<E> {
-        let mut torques = vec![self.arm.zero.clone(); self.arm.dof()];
+        self.arm.of_coordinates(self.torques_of_joints())
+    }
+
+    /// The same, of joints as if each had a drive.
+    fn torques_of_joints(&self) -> Vec<E> {
+        let mut torques = vec![self.arm.zero.clone(); self.arm.joints.len()];
         for (i, joint) in self.arm.joints.iter().enumerate() {
             self.add_body(Carrier::Link(i), &ten(&joint.link), &mut torques);
             self.add_rotor_mass(i, &mut torques);
@@ -240,22 +247,22 @@ impl<'a, E: Element> ReferenceMotion<'a, E> {
         ReferenceMotion { parts: parts.into_iter().map(|(k, motion)| (k, ArmMotion::new(arm, pose, motion))).collect() }
     }
 
-    /// The sum over all motions of the torques from `add`.
+    /// The sum over all motions of the torques of joints from `add`, as torques of coordinates.
     pub fn torques(&self, add: &dyn Fn(&ArmMotion<'a, E>, &mut [E])) -> Vec<E> {
         let (_, first) = &self.parts[0];
-        let mut total = vec![first.arm.zero.clone(); first.arm.dof()];
+        let mut total = vec![first.arm.zero.clone(); first.arm.joints.len()];
         for (weight, moving) in &self.parts {
-            let mut torques = vec![first.arm.zero.clone(); first.arm.dof()];
+            let mut torques = vec![first.arm.zero.clone(); first.arm.joints.len()];
             add(moving, &mut torques);
             for (total, torque) in total.iter_mut().zip(&torques) {
                 *total = total.plus(&weight.times(torque));
             }
         }
-        total
+        first.arm.of_coordinates(total)
     }
 
     /// The torques of the whole arm, without friction.
     pub fn whole(&self) -> Vec<E> {
-        self.torques(&|moving, torques| torques.clone_from_slice(&moving.torques()))
+        self.torques(&|moving, torques| torques.clone_from_slice(&moving.torques_of_joints()))
     }
 }

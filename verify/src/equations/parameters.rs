@@ -147,7 +147,7 @@ impl Standard {
 /// The arm with other standard parameters; `None` if a body has moments but no mass.
 pub fn with_standard<E: Element>(arm: &Arm<E>, columns: &[Standard], values: &[E]) -> Option<Arm<E>> {
     let mut arm = arm.clone();
-    let (n, zero) = (arm.dof(), arm.zero.clone());
+    let (n, zero) = (arm.joints.len(), arm.zero.clone());
     let mut tens = vec![vec![zero.clone(); 10]; n + arm.tips.len()];
     for (column, value) in columns.iter().zip(values) {
         match *column {
@@ -197,10 +197,11 @@ pub fn standard_columns<E: Element>(arm: &Arm<E>, state: &State<E>, columns: &[S
     let of_rotors = ReferenceMotion::new(arm, &described, &state.dq, &state.dqr, &state.ddqr);
     let unit = |k: usize| -> Vec<E> { (0..10).map(|i| if i == k { arm.one.clone() } else { arm.zero.clone() }).collect() };
     let single = |i: usize, value: E| {
-        let mut column = vec![arm.zero.clone(); arm.dof()];
+        let mut column = vec![arm.zero.clone(); arm.joints.len()];
         column[i] = value;
-        column
+        arm.of_coordinates(column)
     };
+    let state = arm.state_of_joints(state);
     columns
         .iter()
         .map(|column| match *column {
@@ -260,7 +261,7 @@ impl<E: Element> KeptAlone<'_, E> {
     fn torques(&self, poses: (&Pose<E>, &Pose<E>), dq: &[E], dqr: &[E], ddqr: &[E]) -> Vec<E> {
         let (described, joint_frames) = poses;
         let of_links = ReferenceMotion::new(self.arm, joint_frames, dq, dqr, ddqr).torques(&|moving, torques| {
-            for i in 0..self.arm.dof() {
+            for i in 0..self.arm.joints.len() {
                 moving.add_body(Carrier::Link(i), &self.ten(|k| Standard::Link(i, k)), torques);
             }
         });
@@ -294,6 +295,7 @@ impl<E: Element> KeptAlone<'_, E> {
         };
         let b = rows((0..n).map(|j| without_gravity(torques(&still, &unit(j)))).collect());
         let c = rows((0..n).map(|j| without_gravity(torques(&unit(j), &still))).collect());
+        let at_joints = self.arm.state_of_joints(state);
         let friction = |(i, joint): (usize, &Joint<E>)| {
             let mut viscous = self.of(Standard::Viscous(i), &joint.viscous);
             if let Some(motor) = &joint.motor {
@@ -302,22 +304,23 @@ impl<E: Element> KeptAlone<'_, E> {
             }
             let coulomb = self.of(Standard::Coulomb(i), &joint.coulomb);
             let (offset, cubic) = (self.of(Standard::Offset(i), &joint.offset), self.of(Standard::Cubic(i), &joint.cubic));
-            let rate = &state.dq[i];
+            let rate = &at_joints.dq[i];
             let steep = cubic.times(rate).times(rate).times(rate);
-            let fading = self.of(Standard::Stribeck(i), &joint.stribeck).times(&state.stribeck[i]);
-            viscous.times(rate).plus(&coulomb.plus(&fading).times(&state.signs[i])).plus(&offset).plus(&steep)
+            let fading = self.of(Standard::Stribeck(i), &joint.stribeck).times(&at_joints.stribeck[i]);
+            viscous.times(rate).plus(&coulomb.plus(&fading).times(&at_joints.signs[i])).plus(&offset).plus(&steep)
         };
         let stiffness = |i: usize, joint: &Joint<E>| self.of(Standard::Stiffness(i), &joint.stiffness);
-        let spring = |(i, joint): (usize, &Joint<E>)| stiffness(i, joint).times(&state.q[i].minus(&joint.rest));
-        let g = g.iter().zip(self.arm.joints.iter().enumerate().map(spring)).map(|(g, s)| g.plus(&s)).collect();
-        let f = self.arm.joints.iter().enumerate().map(friction).collect();
+        let spring = |(i, joint): (usize, &Joint<E>)| stiffness(i, joint).times(&at_joints.q[i].minus(&joint.rest));
+        let springs = self.arm.of_coordinates(self.arm.joints.iter().enumerate().map(spring).collect());
+        let g = g.iter().zip(springs).map(|(g, s)| g.plus(&s)).collect();
+        let f = self.arm.of_coordinates(self.arm.joints.iter().enumerate().map(friction).collect());
         Parts { b, c, g, f, u: self.potential_energy(state) }
     }
 
     /// U(q) = -Σ g0'(m p + R h) + Σ ½ k (q - rest)², with the first moment h in a frame at p.
     pub fn potential_energy(&self, state: &State<E>) -> E {
         let described = Pose::new(self.arm, state);
-        let links = (0..self.arm.dof()).map(|i| (&described.chosen[i], self.ten(|k| Standard::Link(i, k))));
+        let links = (0..self.arm.joints.len()).map(|i| (&described.chosen[i], self.ten(|k| Standard::Link(i, k))));
         let loads = self.loaded().map(|tip| (&described.tools[tip], self.ten(|k| Standard::Payload(tip, k))));
         let of_bodies = links.chain(loads).fold(self.arm.zero.clone(), |sum, (frame, ten)| {
             let h = [1, 2, 3].map(|k| ten[k].clone());
@@ -413,7 +416,7 @@ pub fn base_map<K: Arithmetic>(
     let states = base.len().div_ceil(n) + 3;
     let (mut left, mut right) = (Vec::new(), Vec::new());
     for _ in 0..states {
-        let fades = (0..n).map(|i| all.contains(&Standard::Stribeck(i)));
+        let fades = (0..n).map(|a| all.contains(&Standard::Stribeck(arm.joint_of(a))));
         let state = State::draw(arithmetic, n).with_stribeck(arithmetic, fades).with_gravity(arithmetic, gravity_is_argument);
         let arm = arm.clone().under(&state.g0);
         let y = standard_columns(&arm, &state, base, LinkFrames::Joint);

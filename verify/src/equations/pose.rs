@@ -20,6 +20,11 @@ pub struct Pose<E> {
     pub tools: Vec<Frame<E>>,
     /// For each link the joints that move it, from its own joint to the base.
     pub ancestors: Vec<Vec<usize>>,
+    /// For each link the coordinates that move it.
+    pub moving: Vec<Vec<usize>>,
+    /// The coordinates that move each joint, with their factors, if joints are coupled.
+    rows: Option<Vec<Vec<(usize, E)>>>,
+    dof: usize,
     revolute: Vec<bool>,
     zero: E,
 }
@@ -63,6 +68,7 @@ impl<E: Element> Pose<E> {
     /// The pose at a state.
     pub fn new(arm: &Arm<E>, state: &State<E>) -> Pose<E> {
         let (zero, one) = (&arm.zero, &arm.one);
+        let state = &*arm.state_of_joints(state);
         let mut joints: Vec<Frame<E>> = Vec::new();
         let mut ancestors: Vec<Vec<usize>> = Vec::new();
         let mut links: Vec<Frame<E>> = Vec::new();
@@ -99,7 +105,16 @@ impl<E: Element> Pose<E> {
         let chosen = links.iter().zip(&arm.joints).map(|(frame, joint)| frame.then(&joint.chosen)).collect();
         let tools = arm.tips.iter().map(|tip| links[tip.link].then(&tip.tool)).collect();
         let revolute = arm.joints.iter().map(|j| j.revolute).collect();
-        Pose { joints, axes, chosen, links, tools, ancestors, revolute, zero: zero.clone() }
+        let rows = arm.coupling.is_some().then(|| (0..arm.joints.len()).map(|i| arm.row(i)).collect::<Vec<_>>());
+        let moving = match &rows {
+            None => ancestors.clone(),
+            Some(rows) => {
+                let moves = |path: &Vec<usize>, a: &usize| path.iter().any(|&i| rows[i].iter().any(|(of, _)| of == a));
+                ancestors.iter().map(|path| (0..arm.dof()).filter(|a| moves(path, a)).collect()).collect()
+            }
+        };
+        let dof = arm.dof();
+        Pose { joints, axes, chosen, links, tools, ancestors, moving, rows, dof, revolute, zero: zero.clone() }
     }
 
     /// The same pose with the links in the frames for base parameters.
@@ -108,13 +123,21 @@ impl<E: Element> Pose<E> {
         self
     }
 
-    /// Linear and angular velocity per unit of each joint rate, for a point fixed in `link` (`None`: in the base).
+    /// Linear and angular velocity per unit of each coordinate's rate, for a point fixed in `link` (`None`: in the base).
     pub fn jacobian(&self, link: Option<usize>, point: &Vector<E>) -> Vec<(Vector<E>, Vector<E>)> {
         let nothing = || [0; 3].map(|_| self.zero.clone());
-        let mut columns = vec![(nothing(), nothing()); self.joints.len()];
+        let mut columns = vec![(nothing(), nothing()); self.dof];
         for &j in link.map_or(&[][..], |link| &self.ancestors[link]) {
             let z = self.axes[j].clone();
-            columns[j] = if self.revolute[j] { (cross(&z, &sub(point, &self.joints[j].origin)), z) } else { (z, nothing()) };
+            let own = if self.revolute[j] { (cross(&z, &sub(point, &self.joints[j].origin)), z) } else { (z, nothing()) };
+            let Some(rows) = &self.rows else {
+                columns[j] = own;
+                continue;
+            };
+            for (a, factor) in &rows[j] {
+                let (linear, angular) = &columns[*a];
+                columns[*a] = (add(linear, &scale(factor, &own.0)), add(angular, &scale(factor, &own.1)));
+            }
         }
         columns
     }

@@ -26,7 +26,7 @@ use super::items::{Part, Public, INTO};
 use super::lexer::{Fault, Kind, Token};
 use super::parser::{Parser, Reads};
 use crate::check::Check;
-use crate::contract::{of_tip, Promise, Returned};
+use crate::contract::{of_module, Promise, Returned};
 use crate::enclosure::Float;
 use crate::program::{Angle, Argument, Output, Program, Step};
 
@@ -46,6 +46,8 @@ pub(super) struct Shared<'a, 'm> {
     pub(super) written: &'m BTreeMap<&'a str, Parser<'a>>,
     /// Whether the module has the fast sines.
     pub(super) fast: bool,
+    /// Whether joints are coupled.
+    pub(super) is_coupled: bool,
     /// Total number of steps and entries of all functions so far, across threads.
     pub(super) steps: AtomicUsize,
 }
@@ -121,7 +123,11 @@ pub(super) fn compile<'a>(function: &Public<'a>, shared: &Shared<'a, '_>) -> Res
         Some((body, (promise, _))) => {
             compiler.parser.expect("{")?;
             let written = format!("{}{INTO}", function.name);
-            compiler.parser.expect_lists(&of_tip(function.name, &promise.calls_written(&function.arguments, &written)))?;
+            compiler.parser.expect_lists(&of_module(
+                function.name,
+                compiler.shared.is_coupled,
+                &promise.calls_written(&function.arguments, &written),
+            ))?;
             compiler.parser.expect("result }")?;
             compiler.parser = body;
             compiler.parser.expect("{")?;

@@ -19,9 +19,9 @@ use super::parameters::{has_payload, names, C_PAYLOAD};
 use super::plain::{in_order, promised, sizes, Body, Comments, Constants, Functions, Lines, Syntax};
 use super::{Constant, Fault, Function, Module};
 use crate::check::Check;
-use crate::contract::{of_tip, Array, Length, Returned, Sizes};
+use crate::contract::{of_module, Array, Length, Returned, Sizes};
 use crate::enclosure::Float;
-use crate::program::{Argument, Step, NOMINAL_GRAVITY, TIPS};
+use crate::program::{Argument, Step, JOINTS, NOMINAL_GRAVITY, TIPS};
 
 pub(super) const COMMENTS: Comments = Comments { line: None, block: Some(("/*", "*/")), behind: "" };
 
@@ -71,9 +71,10 @@ impl Robot {
         pieces.join(&format!("{}_", self.name))
     }
 
-    fn length(&self, length: Length) -> String {
-        match length {
+    fn length(&self, length: Length, sizes: &Sizes) -> String {
+        match length.in_module(sizes) {
             Length::Dof => format!("[{}_DOF]", self.upper),
+            Length::Joints => format!("[{}_JOINTS]", self.upper),
             Length::Parameters => format!("[{}_PARAMETERS]", self.upper),
             Length::BaseParameters => format!("[{}_BASE_PARAMETERS]", self.upper),
             Length::Task => format!("[{}_TASK_ROWS]", self.upper),
@@ -197,7 +198,7 @@ fn constants(
     let order = ["NAME", "JOINT_IS_REVOLUTE", "", "DOF", "PARAMETERS", "TASK_ROWS", "TASK", TIPS, "JOINT_NAMES"]
         .into_iter()
         .chain(["POSITION_LIMITS", "VELOCITY_LIMITS", "EFFORT_LIMITS", "ACCELERATION_LIMITS", "JERK_LIMITS"])
-        .chain(["PARAMETER_NAMES", "NOMINAL_PARAMETERS", "PARAMETER_INDEX"])
+        .chain([JOINTS, "ALL_JOINT_NAMES", "COUPLING", "COUPLING_OFFSET", "PARAMETER_NAMES", "NOMINAL_PARAMETERS", "PARAMETER_INDEX"])
         .chain([NOMINAL_GRAVITY, "BASE_PARAMETERS", "BASE_PARAMETER_NAMES", "NOMINAL_BASE_PARAMETERS"]);
     in_order(order, |name| {
         if name.is_empty() {
@@ -217,7 +218,8 @@ fn constants(
         let left_out = match name {
             "TASK" => none("TASK_ROWS"),
             "PARAMETER_NAMES" | "NOMINAL_PARAMETERS" => none("PARAMETERS"),
-            NOMINAL_GRAVITY | "BASE_PARAMETERS" | "TASK_ROWS" | TIPS => !lines.peek().starts_with(&begin),
+            JOINTS | NOMINAL_GRAVITY | "BASE_PARAMETERS" | "TASK_ROWS" | TIPS => !lines.peek().starts_with(&begin),
+            "ALL_JOINT_NAMES" | "COUPLING" | "COUPLING_OFFSET" => none(JOINTS),
             "BASE_PARAMETER_NAMES" | "NOMINAL_BASE_PARAMETERS" => none("BASE_PARAMETERS"),
             _ => false,
         };
@@ -281,11 +283,12 @@ impl<'a> Functions<'a> for Reader<'a, '_> {
         if number != (returns == Some(1)) {
             return Err(here(format!("`{name}` returns something else than it should")));
         }
-        let of_argument =
-            |argument: &Argument| format!("    const {robot}_real {}{}", argument.name(), self.robot.length(argument.length()));
+        let of_argument = |argument: &Argument| {
+            format!("    const {robot}_real {}{}", argument.name(), self.robot.length(argument.length(), &self.sizes))
+        };
         let results = promise.returned.named();
         let of_result = |(part, array): &(String, Array)| {
-            let lengths: String = array.iter().map(|length| self.robot.length(*length)).collect();
+            let lengths: String = array.iter().map(|length| self.robot.length(*length, &self.sizes)).collect();
             format!("    {robot}_real {part}{lengths}")
         };
         let mut all: Vec<String> = arguments.iter().map(of_argument).collect();
@@ -293,7 +296,7 @@ impl<'a> Functions<'a> for Reader<'a, '_> {
             all.extend(results.iter().map(of_result));
         }
         for (i, argument) in all.iter().enumerate() {
-            lines.expect(&format!("{}{}", of_tip(name, argument), if i + 1 == all.len() { ")" } else { "," }))?;
+            lines.expect(&format!("{}{}", of_module(name, true, argument), if i + 1 == all.len() { ")" } else { "," }))?;
         }
         lines.expect("{")?;
         lines.expect(&format!("    {upper}_UNFUSED"))?;

@@ -9,9 +9,9 @@ use super::parameters::{has_payload, RUST_INDEX, RUST_PAYLOAD};
 use super::parser::Parser;
 use super::sines::{self, Private};
 use crate::check::Check;
-use crate::contract::{of_tip, Promise};
+use crate::contract::{of_module, Promise};
 use crate::enclosure::Float;
-use crate::program::{Argument, NOMINAL_GRAVITY, TIPS};
+use crate::program::{Argument, JOINTS, NOMINAL_GRAVITY, TIPS};
 use crate::reference::BASE_REGRESSOR;
 
 const LINTS: &str = "#[allow(dead_code)]";
@@ -22,7 +22,7 @@ const ALL_LINTS: &str = "#[allow(dead_code, clippy::all)]";
 pub(super) const INTO: &str = "_into";
 
 /// The permitted constants, with their types.
-const CONSTANTS: [(&str, &str); 18] = [
+const CONSTANTS: [(&str, &str); 22] = [
     ("NAME", "&str"),
     ("DOF", "usize"),
     ("JOINT_NAMES", "[&str; DOF]"),
@@ -38,6 +38,10 @@ const CONSTANTS: [(&str, &str); 18] = [
     ("PARAMETER_NAMES", "[&str; PARAMETERS]"),
     ("NOMINAL_PARAMETERS", "[Real; PARAMETERS]"),
     (NOMINAL_GRAVITY, "[Real; 3]"),
+    (JOINTS, "usize"),
+    ("ALL_JOINT_NAMES", "[&str; JOINTS]"),
+    ("COUPLING", "[[Real; DOF]; JOINTS]"),
+    ("COUPLING_OFFSET", "[Real; JOINTS]"),
     ("BASE_PARAMETERS", "usize"),
     ("BASE_PARAMETER_NAMES", "[&str; BASE_PARAMETERS]"),
     ("NOMINAL_BASE_PARAMETERS", "[Real; BASE_PARAMETERS]"),
@@ -82,6 +86,8 @@ pub(super) struct Items<'a> {
     pub(super) real: Option<Float>,
     /// Whether the acceleration of free fall is an argument.
     gravity: bool,
+    /// Whether joints are coupled.
+    pub(super) is_coupled: bool,
     /// Type and position of each constant's value.
     pub(super) constants: BTreeMap<&'a str, (String, Parser<'a>)>,
     /// The position of the struct's documentation.
@@ -124,7 +130,8 @@ impl<'a> Items<'a> {
         let mut parser = Parser::new(text)?;
         // Functions may stand before the constants.
         let gravity = text.contains(&format!("pub const {NOMINAL_GRAVITY}: "));
-        let mut items = Items { gravity, ..Items::default() };
+        let is_coupled = text.contains(&format!("pub const {JOINTS}: "));
+        let mut items = Items { gravity, is_coupled, ..Items::default() };
         while parser.peek().kind == Kind::Comment {
             let line = parser.take()?;
             if items.head.len() == MOST_HEAD {
@@ -137,6 +144,9 @@ impl<'a> Items<'a> {
         }
         if gravity != items.constants.contains_key(NOMINAL_GRAVITY) {
             return Err(parser.peek().fault(format!("`{NOMINAL_GRAVITY}` stands where it is no constant")));
+        }
+        if is_coupled != items.constants.contains_key(JOINTS) {
+            return Err(parser.peek().fault(format!("`{JOINTS}` stands where it is no constant")));
         }
         Ok(items)
     }
@@ -294,7 +304,7 @@ impl<'a> Items<'a> {
             return Err(name.fault(format!("function `{}` stands twice", name.text)));
         }
         let arguments = promise.arguments_of(with, self.gravity);
-        let returned = of_tip(name.text, &promise.returned.rust());
+        let returned = of_module(name.text, self.is_coupled, &promise.returned.rust());
         signature(parser, &format!("({})->{returned}", Promise::typed(&arguments).join(",")))?;
         let body = *parser;
         self.public.push(Public { name: name.text, arguments, documentation: head.documentation, body });
@@ -312,7 +322,7 @@ impl<'a> Items<'a> {
             found.ok_or_else(|| name.fault(format!("{} is not a function that an emitted module has", name.shown())))?;
         let public = if promise.has_form_into() { "pub " } else { "" };
         parser.expect(&format!("{ALL_LINTS} {public}fn {}", name.text))?;
-        let results = results.into_iter().map(|(name, of)| format!("{name}:&mut{}", of_tip(whole, &of)));
+        let results = results.into_iter().map(|(name, of)| format!("{name}:&mut{}", of_module(whole, self.is_coupled, &of)));
         let all: Vec<String> = Promise::typed(&promise.arguments_of(with, self.gravity)).into_iter().chain(results).collect();
         signature(parser, &format!("({})", all.join(",")))?;
         let body = *parser;

@@ -19,7 +19,7 @@ use super::plain::{
     in_order, is_of_some_arms, names_of, promised, sizes, Body, Comments, Constants, Functions, Lines, Parts, Syntax, CONSTANTS,
 };
 use super::{Constant, Fault, Function, Module};
-use crate::contract::{of_tip, Length, Promise, Returned, Sizes};
+use crate::contract::{of_module, Length, Promise, Returned, Sizes};
 use crate::enclosure::Float;
 
 pub(super) const COMMENTS: Comments = Comments { line: Some("#"), block: Some(("    \"\"\"", "\"\"\"")), behind: ":" };
@@ -251,7 +251,8 @@ impl<'a> Reader<'a, '_> {
         lengths: &'static [Length],
         access: &str,
     ) -> Result<(), Fault> {
-        let dimensions: Vec<String> = lengths.iter().map(|length| of_tip(&body.program.name, &length.rust())).collect();
+        let dimensions: Vec<String> =
+            lengths.iter().map(|length| of_module(&body.program.name, self.sizes.joints.is_some(), &length.rust())).collect();
         lines.expect(&format!("{begin}_leave(xp, {like}, shape, {}, (", tuple(&dimensions)))?;
         for place in Returned::One(lengths).places(&self.sizes) {
             let line = lines.number();

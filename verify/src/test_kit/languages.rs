@@ -139,7 +139,7 @@ fn c(kit: &Kit, module: &str) -> String {
     // Base parameters are omitted, because the functions without them are tested.
     let with = kit.values.iter().any(|value| value.with);
     for (name, _) in named(&kit.states[0]).into_iter().filter(|(name, _)| with || *name != "pi") {
-        let length = of_macro(Argument::named(name).map_or(Length::Dof, Argument::length));
+        let length = of_macro(Argument::named(name).map_or(Length::Dof, Argument::length), kit);
         let rows = kit.states.iter().filter_map(|state| named(state).into_iter().find(|(other, _)| *other == name));
         let rows: Vec<String> = rows.map(|(_, values)| format!("{{{}}}", numbers(values))).collect();
         let _ = writeln!(text, "static const robot_real state_{name}[{}][{length}] = {{{}}};", kit.states.len(), rows.join(", "));
@@ -162,7 +162,7 @@ fn c(kit: &Kit, module: &str) -> String {
         let number = parts.len() == 1 && parts[0].1.is_empty();
         let mut at = 0;
         for (_, lengths) in parts.iter().filter(|_| !number) {
-            let inner: String = lengths.iter().skip(1).map(|&length| format!("[{}]", of_macro(length))).collect();
+            let inner: String = lengths.iter().skip(1).map(|&length| format!("[{}]", of_macro(length, kit))).collect();
             let place = if at == 0 { "found".to_string() } else { format!("found + {at}") };
             let _ = if inner.is_empty() { write!(call, ", {place}") } else { write!(call, ", (robot_real (*){inner})({place})") };
             at += lengths.iter().map(|length| length.of(&kit.sizes)).product::<usize>();
@@ -181,8 +181,8 @@ fn c(kit: &Kit, module: &str) -> String {
     in_the_name_of(&kit.robot, &text)
 }
 
-fn of_macro(length: Length) -> String {
-    match length {
+fn of_macro(length: Length, kit: &Kit) -> String {
+    match length.in_module(&kit.sizes) {
         Length::Of(value) => value.to_string(),
         named => format!("ROBOT_{}", named.rust()),
     }

@@ -57,6 +57,7 @@ type Verdict = [Vec<Option<Worst>>; 4];
 pub(super) fn run(robot: &Path, path: Option<&Path>, trajectory: &Path) -> Result<u8, u8> {
     let source = input::description(robot)?;
     let (manipulator, _) = input::manipulator(&source, Scalar::F64, input::Warnings::Counted)?;
+    input::without_coupling(&source, &manipulator, "time")?;
     let limits = match path {
         None => Limits::of(&manipulator),
         Some(path) => {

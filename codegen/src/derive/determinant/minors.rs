@@ -12,7 +12,7 @@
 
 use dashu_base::{Gcd, UnsignedAbs};
 
-use super::{contents, factors, of_columns, without_fixed, zeros_without_joints, Factor, Zeros, TERMS};
+use super::{contents, factors, in_coordinates, of_columns, without_fixed, zeros_without_joints, Factor, Zeros, TERMS};
 use crate::derive::arm::Arm;
 use crate::derive::parameters::View;
 use crate::derive::quantities::kinematics::geometric_jacobian;
@@ -91,6 +91,7 @@ pub fn minors(model: &Model, view: View<'_>) -> Result<Minors, NoMinors> {
     let mut pool = Pool::new(model.field.clone());
     let arm = Arm::new(&mut pool, manipulator, view);
     let jacobian = if manipulator.task.len() == 6 { twists(&mut pool, &arm) } else { geometric_jacobian(&mut pool, &arm) };
+    let (mut pool, jacobian) = in_coordinates(pool, &arm, jacobian);
     let task: Vec<Vec<ExprId>> = manipulator.task.iter().map(|row| jacobian[row.index()].clone()).collect();
     let all = without_each(&mut pool, &task);
     let (mut pool, task) = without_fixed(&mut pool, &all, &task);

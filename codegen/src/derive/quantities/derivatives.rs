@@ -116,10 +116,13 @@ pub static FORWARD_DYNAMICS_DERIVATIVES: Quantity = Quantity {
          inverse of the inertia matrix. Coulomb friction counts as constant: its derivative is taken as 0, at rest too.",
     )
     .with_load(LOAD),
-    recursion: Recursion::new(RewriteScope::Dynamics, |pool, arm, plan, _| {
-        let (by_q, by_dq, inverse) = forward_dynamics_derivatives(pool, arm, plan);
-        [by_q, by_dq, inverse].concat().concat()
-    }),
+    recursion: Recursion {
+        in_coordinates: true,
+        ..Recursion::new(RewriteScope::Dynamics, |pool, arm, plan, _| {
+            let (by_q, by_dq, inverse) = forward_dynamics_derivatives(pool, arm, plan);
+            [by_q, by_dq, inverse].concat().concat()
+        })
+    },
     missing: Quantity::MISSING_WITHOUT_MASS,
     gathers: &[],
     interface: Some("ForwardDynamicsDerivatives"),
@@ -159,24 +162,31 @@ pub fn inverse_dynamics_derivatives(pool: &mut Pool, arm: &Arm, plan: &mut Plan,
 
 /// ∂ddq/∂q, ∂ddq/∂dq and B^-1.
 pub fn forward_dynamics_derivatives(pool: &mut Pool, arm: &Arm, plan: &mut Plan) -> (Rows, Rows, Rows) {
-    let n = arm.dof();
     let (b, c) = coriolis::inertia_and_coriolis(pool, arm, plan);
     let g = gravity(pool, arm, plan);
     let rates = arm.symbols(pool, Symbol::Rate);
     let mut resistance = friction(pool, arm, &rates);
     add_load_friction(pool, arm, plan, &mut resistance);
-    let right: Vec<ExprId> = (0..n)
+    let bias: Vec<ExprId> = (0..arm.dof())
         .map(|i| {
             let centrifugal = pool.dot(&c[i], &rates);
-            let bias = pool.sum([centrifugal, g[i], resistance[i]]);
+            pool.sum([centrifugal, g[i], resistance[i]])
+        })
+        .collect();
+    let (bias, b) = (arm.project(pool, bias), arm.project_matrix(pool, b));
+    let n = b.len();
+    let right: Vec<ExprId> = (0..n)
+        .map(|i| {
             let tau = pool.symbol(Symbol::Torque(i as u16));
-            pool.sub(tau, bias)
+            pool.sub(tau, bias[i])
         })
         .collect();
     let factors = LdlFactors::of_inertia(pool, arm, &b);
-    let motion = Motion { accelerations: factors.solve(pool, &right), ..Motion::plain(pool, arm) };
+    let accelerations = factors.solve(pool, &right);
+    let motion = Motion { accelerations: arm.spread(pool, accelerations), ..Motion::plain(pool, arm) };
     let inverse = factors.inverse(pool);
     let (by_q, by_rates) = inverse_dynamics_derivatives(pool, arm, plan, &motion);
+    let (by_q, by_rates) = (arm.project_matrix(pool, by_q), arm.project_matrix(pool, by_rates));
     let mut solved = |m: &Rows| -> Rows {
         let columns: Rows = (0..n).map(|j| m.iter().map(|row| row[j]).collect()).collect();
         inverse.iter().map(|row| columns.iter().map(|column| -pool.dot(row, column)).collect()).collect()

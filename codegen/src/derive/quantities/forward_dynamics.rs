@@ -32,7 +32,10 @@ pub static FORWARD_DYNAMICS: Quantity = Quantity {
         )
         .with_load("F is {friction} and {load_friction} together.")
     },
-    recursion: Recursion::new(RewriteScope::Dynamics, |pool, arm, plan, _| forward_dynamics(pool, arm, plan)),
+    recursion: Recursion {
+        in_coordinates: true,
+        ..Recursion::new(RewriteScope::Dynamics, |pool, arm, plan, _| forward_dynamics(pool, arm, plan))
+    },
     missing: Quantity::MISSING_WITHOUT_MASS,
     gathers: &[],
     interface: Some("Dynamics"),
@@ -41,10 +44,15 @@ pub static FORWARD_DYNAMICS: Quantity = Quantity {
 /// ddq(q, dq, tau).
 pub fn forward_dynamics(pool: &mut Pool, arm: &Arm, plan: &mut Plan) -> Vec<ExprId> {
     let b = inertia_matrix(pool, arm, plan);
+    let b = arm.project_matrix(pool, b);
     let motion = Motion::unaccelerated(pool, arm);
     let mut bias = inverse_dynamics(pool, arm, &motion);
     add_load_friction(pool, arm, plan, &mut bias);
-    let tau = arm.symbols(pool, Symbol::Torque);
-    let right: Vec<ExprId> = (0..arm.dof()).map(|i| pool.sub(tau[i], bias[i])).collect();
+    let bias = arm.project(pool, bias);
+    let torque = |pool: &mut Pool, (i, bias): (u16, ExprId)| {
+        let tau = pool.symbol(Symbol::Torque(i));
+        pool.sub(tau, bias)
+    };
+    let right: Vec<ExprId> = (0..).zip(bias).map(|entry| torque(pool, entry)).collect();
     LdlFactors::of_inertia(pool, arm, &b).solve(pool, &right)
 }

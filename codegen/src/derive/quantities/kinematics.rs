@@ -48,7 +48,7 @@ pub static LINK_FRAMES: Quantity = Quantity {
     arguments: &[Argument::Q],
     result: &[ResultPart {
         element: Some(Element { name: "link_frame", letter: "T" }),
-        ..ResultPart::whole(Typeset::plain("T_i(q)"), Typeset::plain("t"), &[Length::Dof, Length::Fixed(4), Length::Fixed(4)], "1, m")
+        ..ResultPart::whole(Typeset::plain("T_i(q)"), Typeset::plain("t"), &[Length::Joints, Length::Fixed(4), Length::Fixed(4)], "1, m")
     }],
     structure: None,
     has_parameters: false,
@@ -130,7 +130,7 @@ pub static LINK_JACOBIANS: Quantity = Quantity {
         ..ResultPart::whole(
             Typeset::plain("J_i(q)"),
             Typeset::plain("j"),
-            &[Length::Dof, Length::Fixed(6), Length::Dof],
+            &[Length::Joints, Length::Fixed(6), Length::Dof],
             "m or 1 above, 1 below",
         )
     }],

@@ -48,7 +48,9 @@ pub static OPERATIONAL_INERTIA: Quantity = Quantity {
 pub fn operational_inertia(pool: &mut Pool, arm: &Arm, plan: &mut Plan, task: &[usize]) -> Vec<Vec<ExprId>> {
     let jacobian = geometric_jacobian(pool, arm);
     let rows: Vec<Vec<ExprId>> = task.iter().map(|&row| jacobian[row].clone()).collect();
+    let rows = arm.project_columns(pool, rows);
     let b = inertia_matrix(pool, arm, plan);
+    let b = arm.project_matrix(pool, b);
     let mobility = LdlFactors::of_inertia(pool, arm, &b).congruent(pool, &rows);
     LdlFactors::new(pool, &mobility).inverse(pool)
 }
@@ -61,7 +63,7 @@ fn missing(model: &Model, with_parameters: bool) -> Option<String> {
     let task = model.manipulator.task_rows();
     let mut pool = Pool::new(model.field.clone());
     let arm = Arm::new(&mut pool, &model.manipulator, View::Nominal);
-    (!is_defined(&model.field, &arm, &mut pool, &task)).then(|| {
+    (!is_defined(&model.field, &arm, pool, &task)).then(|| {
         let (rows, joints) = (task.len(), model.manipulator.dof());
         format!(
             "J B^-1 J' is singular for every q: the arm's {joints} joints cannot move the {rows} rows of the task independently"
@@ -70,12 +72,15 @@ fn missing(model: &Model, with_parameters: bool) -> Option<String> {
 }
 
 /// Whether the rows of the task are independent but for singular configurations.
-pub fn is_defined(field: &Field, arm: &Arm, pool: &mut Pool, task: &[usize]) -> bool {
-    let jacobian = geometric_jacobian(pool, arm);
+pub fn is_defined(field: &Field, arm: &Arm, mut pool: Pool, task: &[usize]) -> bool {
+    let jacobian = geometric_jacobian(&mut pool, arm);
+    let jacobian = arm.project_columns(&mut pool, jacobian);
+    let (pool, jacobian) = arm.in_coordinates(pool, jacobian.concat());
+    let columns = arm.coordinates();
     let mut rows: Vec<Vec<Element>> =
-        task.iter().map(|&row| jacobian[row].iter().map(|&e| pool.fingerprint(e)[0]).collect()).collect();
+        task.iter().map(|&row| jacobian[row * columns..][..columns].iter().map(|&e| pool.fingerprint(e)[0]).collect()).collect();
     let mut rank = 0;
-    for column in 0..arm.dof() {
+    for column in 0..columns {
         let Some(found) = (rank..rows.len()).find(|&r| rows[r][column] != field.zero()) else { continue };
         rows.swap(rank, found);
         let pivot = rows[rank].clone();

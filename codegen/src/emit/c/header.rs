@@ -135,6 +135,16 @@ pub(super) fn macros(module: &Module) -> String {
     let _ = writeln!(text, "#define {upper}_EFFORT_LIMITS {}", limits(|joint| &joint.effort));
     let _ = writeln!(text, "#define {upper}_ACCELERATION_LIMITS {}", limits(|joint| &joint.acceleration));
     let _ = writeln!(text, "#define {upper}_JERK_LIMITS {}", limits(|joint| &joint.jerk));
+    if let Some(coupling) = &module.coupling {
+        let names = coupling.names.iter().map(|name| format!("\"{name}\"")).collect();
+        let numbers = |row: &[Number]| braces(row.iter().map(|value| constant(value, module.scalar)).collect());
+        let rows = coupling.factors.iter().map(|row| numbers(row)).collect();
+        text += "\n/* The variables of all joints, those that follow others included, are S q + c: S is COUPLING, a row for each joint, c COUPLING_OFFSET. */\n";
+        let _ =
+            writeln!(text, "#define {upper}_JOINTS {}\n#define {upper}_ALL_JOINT_NAMES {}", coupling.names.len(), braces(names));
+        let _ = writeln!(text, "#define {upper}_COUPLING {}", braces(rows));
+        let _ = writeln!(text, "#define {upper}_COUPLING_OFFSET {}\n", numbers(&coupling.offsets));
+    }
     if !module.parameters.is_empty() {
         let names = module.parameters.iter().map(|parameter| format!("\"{}\"", parameter.name)).collect();
         let nominal = module.parameters.iter().map(|parameter| constant(&parameter.nominal, module.scalar)).collect();

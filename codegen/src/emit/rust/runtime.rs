@@ -227,7 +227,7 @@ fn traits(module: &Module, robot: &Robot, end: Option<&EndEffector>) -> TokenStr
 fn constants(quantity: &Quantity) -> Vec<Length> {
     let mut all = vec![Length::Dof];
     for &length in quantity.result.iter().flat_map(|part| part.lengths) {
-        if !matches!(length, Length::Fixed(_)) && !all.contains(&length) {
+        if !matches!(length, Length::Fixed(_) | Length::Joints | Length::AllJoints) && !all.contains(&length) {
             all.push(length);
         }
     }
@@ -237,7 +237,7 @@ fn constants(quantity: &Quantity) -> Vec<Length> {
 /// The constant that a trait is generic over.
 fn generic(length: Length) -> TokenStream {
     match length {
-        Length::Dof => quote!(N),
+        Length::Dof | Length::Joints | Length::AllJoints => quote!(N),
         Length::Parameters => quote!(P),
         Length::BaseParameters => quote!(B),
         Length::Task => quote!(M),
@@ -278,6 +278,8 @@ pub fn single_traits() -> String {
 fn method(module: &Module, quantity: &'static Quantity, robot: &Robot, end: Option<&EndEffector>) -> TokenStream {
     let name = format_ident!("{}", quantity.name);
     let quantity = of_end(module, quantity, end).unwrap_or(quantity);
+    // With the dimensions that it has in the module.
+    let quantity = module.functions.iter().map(|function| function.quantity).find(|own| *own == quantity).unwrap_or(quantity);
     let run_time = robot.parameters && quantity.has_parameters;
     let called = format_ident!("{}", quantity.function_name(run_time));
     let arguments = quantity.arguments_of(false, false).map(|a| {
@@ -294,7 +296,19 @@ fn method(module: &Module, quantity: &'static Quantity, robot: &Robot, end: Opti
         }
     });
     let call = quote!(#called(#(#passed),*));
-    let own = |part: &ResultPart| part_type(part, &quote!(Real), &quote!(armgen_runtime::nalgebra::), length);
+    let call = match quantity.has_length(Length::AllJoints) {
+        false => call,
+        true => {
+            let places = coordinates(module).into_iter().map(usize_literal);
+            quote! {{
+                let all = #call;
+                [#(all[#places]),*]
+            }}
+        }
+    };
+    // Traits have an element for each joint with a coordinate.
+    let of_coordinates = |of: Length| length(if of == Length::AllJoints { Length::Dof } else { of });
+    let own = |part: &ResultPart| part_type(part, &quote!(Real), &quote!(armgen_runtime::nalgebra::), of_coordinates);
     let returns = of_parts(quantity, own, |name| quote!(armgen_runtime::robot::#name<Real, DOF>));
     let value = match quantity.result {
         [part] => converted(part, &call),
@@ -321,8 +335,20 @@ fn method(module: &Module, quantity: &'static Quantity, robot: &Robot, end: Opti
     }
 }
 
+/// The places of the joints with a coordinate among all joints.
+fn coordinates(module: &Module) -> Vec<usize> {
+    let names = module.coupling.iter().flat_map(|coupling| &coupling.names).enumerate();
+    let has_coordinate = |name: &String| module.joints.iter().any(|joint| joint.name == *name);
+    names.filter(|(_, name)| has_coordinate(name)).map(|(place, _)| place).collect()
+}
+
 /// The type of a part of a result in the runtime.
-fn part_type(part: &ResultPart, real: &TokenStream, nalgebra: &TokenStream, length: fn(Length) -> TokenStream) -> TokenStream {
+fn part_type(
+    part: &ResultPart,
+    real: &TokenStream,
+    nalgebra: &TokenStream,
+    length: impl Fn(Length) -> TokenStream,
+) -> TokenStream {
     let of_matrix = |rows: Length, columns: Length| match (rows, columns) {
         (Length::Fixed(4), Length::Fixed(4)) => quote!(#nalgebra Matrix4<#real>),
         (rows, columns) => {

@@ -20,6 +20,10 @@ const MARGIN: f64 = 2.0;
 /// Warns of an effort limit below half of what gravity asks for somewhere, where no spring helps.
 pub(in crate::validate) fn check_holding(description: &RobotDescription, arm: &Manipulator, context: &mut Context<'_>) {
     let joints = description.joints.as_ref().map_or(&[][..], |joints| &joints.value);
+    // A coupled joint holds others up, too.
+    if arm.coupling.is_some() {
+        return;
+    }
     // Another doubtful number, such as a length in mm, would be the reason: it has its own warning.
     if !context.diagnostics.is_empty() || joints.iter().all(|joint| joint.limits.effort.is_none()) {
         return;

@@ -1,7 +1,7 @@
 //! Reads the kernels of a module in CUDA: their texts follow from the signatures of the functions.
 
 use super::{Lines, Robot, COMMENTS};
-use crate::contract::{of_tip, Array, Length, Returned, Sizes};
+use crate::contract::{of_module, Array, Length, Returned, Sizes};
 use crate::reader::lexer::Fault;
 use crate::reader::plain::promised;
 
@@ -17,7 +17,7 @@ pub(super) fn read<'n>(
     lines.expect_all(&robot.own(KERNELS), COMMENTS)?;
     for name in functions {
         if let Some(text) = kernel(robot, sizes, name) {
-            lines.expect_all(&of_tip(name, &text), COMMENTS)?;
+            lines.expect_all(&of_module(name, true, &text), COMMENTS)?;
         }
     }
     lines.expect("#endif")
@@ -33,7 +33,7 @@ fn kernel(robot: &Robot, sizes: &Sizes, name: &str) -> Option<String> {
         return None;
     }
     let number = promise.returned == Returned::One(&[]);
-    let in_brackets = |length: Length| robot.length(length);
+    let in_brackets = |length: Length| robot.length(length, sizes);
     let bare = |length: Length| in_brackets(length).trim_matches(['[', ']']).to_owned();
     let Robot { name: robot_name, upper } = robot;
     let real = format!("{robot_name}_real");

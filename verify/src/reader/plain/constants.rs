@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use super::place::Place;
 use crate::contract::Sizes;
 use crate::enclosure::Float;
-use crate::program::{NOMINAL_GRAVITY, TIPS};
+use crate::program::{JOINTS, NOMINAL_GRAVITY, TIPS};
 use crate::reader::constant::Constant;
 use crate::reader::lexer::Fault;
 use crate::reader::{constant_of, tips_of, OF_TIP};
@@ -39,7 +39,7 @@ pub(in crate::reader) enum Entry {
 }
 
 /// The permitted constants: name, kind of entries, and nesting depth of arrays.
-pub(in crate::reader) const CONSTANTS: [(&str, Entry, usize); 19] = [
+pub(in crate::reader) const CONSTANTS: [(&str, Entry, usize); 23] = [
     ("NAME", Entry::Text, 0),
     ("DOF", Entry::Integer, 0),
     ("JOINT_NAMES", Entry::Text, 1),
@@ -49,6 +49,10 @@ pub(in crate::reader) const CONSTANTS: [(&str, Entry, usize); 19] = [
     ("EFFORT_LIMITS", Entry::Real, 1),
     ("ACCELERATION_LIMITS", Entry::Real, 1),
     ("JERK_LIMITS", Entry::Real, 1),
+    (JOINTS, Entry::Integer, 0),
+    ("ALL_JOINT_NAMES", Entry::Text, 1),
+    ("COUPLING", Entry::Real, 2),
+    ("COUPLING_OFFSET", Entry::Real, 1),
     ("TASK_ROWS", Entry::Integer, 0),
     ("TASK", Entry::Integer, 1),
     (TIPS, Entry::Text, 1),
@@ -63,7 +67,8 @@ pub(in crate::reader) const CONSTANTS: [(&str, Entry, usize); 19] = [
 
 /// Whether only the modules of some arms have a constant.
 pub(in crate::reader) fn is_of_some_arms(name: &str) -> bool {
-    [NOMINAL_GRAVITY, TIPS, "TASK_ROWS", "TASK"].contains(&name) || name.contains("BASE_")
+    const OF_COUPLING: [&str; 4] = [JOINTS, "ALL_JOINT_NAMES", "COUPLING", "COUPLING_OFFSET"];
+    [NOMINAL_GRAVITY, TIPS, "TASK_ROWS", "TASK"].contains(&name) || OF_COUPLING.contains(&name) || name.contains("BASE_")
 }
 
 /// The kind of a constant's entries, and the nesting depth of its arrays.
@@ -169,6 +174,7 @@ pub(in crate::reader) fn sizes(constants: &BTreeMap<String, Constant>) -> Result
     });
     Ok(Sizes {
         n: of("DOF", MOST_JOINTS)?,
+        joints: if constants.contains_key(JOINTS) { Some(of(JOINTS, MOST_JOINTS)?) } else { None },
         p: of("PARAMETERS", MOST_ENTRIES)?,
         b: of("BASE_PARAMETERS", MOST_ENTRIES)?,
         m: of("TASK_ROWS", 6)?,
