@@ -99,7 +99,9 @@ fn table<const N: usize>(name: &str, chain: &Chain<N>, bounds: Bounds<N>, range:
         with_timing(chain, &path, &limits(bounds), Ends { hold: false, ..Ends::at_rest() }, 1e-3, 1000, |timing| {
             let timing = timing.unwrap_or_else(|error| panic!("{name}, path {seed}: {error}"));
             // A stop takes hundreds of samples: in one motion of four commands are rare.
-            [chance, chance, chance, 0.01].map(|chance| all.add(&governed(chain, bounds, &timing, &mut next, chance)));
+            for chance in [chance, chance, chance, 0.01] {
+                all.add(&governed(chain, bounds, &timing, &mut next, chance));
+            }
         });
     }
     let Tally { samples, commands, rests, longest, .. } = all;
@@ -150,7 +152,9 @@ fn a_hundred_thousand_commands_keep_all_limits() {
             with_timing(&chain, &path, &limits((velocity, effort)), ends, 1e-3, 1500, |timing| {
                 // A slide of a random arm may be too weak for its load.
                 let Ok(timing) = timing else { return };
-                [0.3, 0.3, 0.3, 0.01].map(|chance| of_arm.add(&governed(&chain, (velocity, effort), &timing, &mut next, chance)));
+                for chance in [0.3, 0.3, 0.3, 0.01] {
+                    of_arm.add(&governed(&chain, (velocity, effort), &timing, &mut next, chance));
+                }
             });
         }
         arms += usize::from(of_arm.samples > 0);

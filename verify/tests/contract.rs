@@ -22,7 +22,7 @@ fn the_checker_and_the_catalogue_know_the_same_functions() {
     let declared: Vec<&str> = catalogue::quantities().map(|quantity| quantity.name).collect();
     let known: Vec<&str> = PROMISES.iter().map(|promise| promise.name).collect();
     assert_eq!(known, declared);
-    let sizes = armgen_verify::contract::Sizes { n: 2, p: 3, b: 4, m: 5, gravity: false, tips: Vec::new() };
+    let sizes = armgen_verify::contract::Sizes { n: 2, joints: None, p: 3, b: 4, m: 5, gravity: false, tips: Vec::new() };
     for (promise, quantity) in PROMISES.iter().zip(catalogue::quantities()) {
         let name = promise.name;
         let arguments: Vec<&str> = quantity.arguments.iter().copied().map(Argument::name).collect();
@@ -31,7 +31,7 @@ fn the_checker_and_the_catalogue_know_the_same_functions() {
         let (kind, fields) = result(quantity);
         assert_eq!(promise.returned.rust(), kind, "{name}");
         let places = promise.returned.places(&sizes);
-        let of = catalogue::Sizes { dof: 2, parameters: 3, base_parameters: 4, task: 5 };
+        let of = catalogue::Sizes { dof: 2, joints: 2, parameters: 3, base_parameters: 4, task: 5 };
         assert_eq!(places.len(), quantity.result.iter().map(|part| part.len(&of)).sum::<usize>(), "{name}");
         assert!(places.iter().all(|place| fields.iter().any(|field| place.starts_with(field.as_str()))), "{name}: {places:?}");
     }

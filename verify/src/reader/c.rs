@@ -198,7 +198,15 @@ fn constants(
     let order = ["NAME", "JOINT_IS_REVOLUTE", "", "DOF", "PARAMETERS", "TASK_ROWS", "TASK", TIPS, "JOINT_NAMES"]
         .into_iter()
         .chain(["POSITION_LIMITS", "VELOCITY_LIMITS", "EFFORT_LIMITS", "ACCELERATION_LIMITS", "JERK_LIMITS"])
-        .chain([JOINTS, "ALL_JOINT_NAMES", "COUPLING", "COUPLING_OFFSET", "PARAMETER_NAMES", "NOMINAL_PARAMETERS", "PARAMETER_INDEX"])
+        .chain([
+            JOINTS,
+            "ALL_JOINT_NAMES",
+            "COUPLING",
+            "COUPLING_OFFSET",
+            "PARAMETER_NAMES",
+            "NOMINAL_PARAMETERS",
+            "PARAMETER_INDEX",
+        ])
         .chain([NOMINAL_GRAVITY, "BASE_PARAMETERS", "BASE_PARAMETER_NAMES", "NOMINAL_BASE_PARAMETERS"]);
     in_order(order, |name| {
         if name.is_empty() {

@@ -119,6 +119,7 @@ impl Robot {
     pub(crate) fn dimension(&self, function: &str, length: Length) -> usize {
         match length {
             Length::Dof => self.sizes.n,
+            Length::Joints => self.sizes.joints.unwrap_or(self.sizes.n),
             Length::Parameters => self.sizes.p,
             Length::BaseParameters => self.sizes.b,
             Length::Task => self.sizes.of_function(function).m,
