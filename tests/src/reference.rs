@@ -86,8 +86,11 @@ mod tests {
         for entry in std::fs::read_dir(folder).expect("robots/") {
             let path = entry.expect("an entry").path();
             let text = std::fs::read_to_string(&path).expect("a description");
-            let head: String = text.lines().take_while(|line| line.starts_with('#')).collect::<Vec<_>>().join(" ");
-            let named = ["data sheet", "set of", "computed from", "technical project"].iter().any(|source| head.contains(source));
+            let before = if path.extension().is_some_and(|extension| extension == "urdf") { "<robot" } else { "name:" };
+            let head = text.split(before).next().unwrap_or_default();
+            let named = ["data sheet", "set of", "computed from", "technical project", "Figures: github.com"]
+                .iter()
+                .any(|source| head.contains(source));
             assert!(named, "{}: no source in {head:?}", path.display());
         }
     }
