@@ -307,6 +307,7 @@ class Robot:
     geometric_jacobian: Final[_ArrayOfQ]
     geometric_jacobian_dot: Final[_ArrayOfQDq]
     link_jacobians: Final[_ArrayOfQ]
+    joint_variables: Final[_ArrayOfQ]
     inertia_matrix: Final[_ArrayOfQ]
     inertia_matrix_with: Final[_ArrayOfPiQ]
     coriolis_matrix: Final[_ArrayOfQDq]
