@@ -56,7 +56,7 @@ fn main() {
                 calls += &format!(
                     "    let (v, p) = (core::hint::black_box([0.5; {name}::DOF]), core::hint::black_box([0.5; {name}::PARAMETERS]));\n    \
                      let arguments = {name}::Arguments {{ q: v, dq: v, ddq: v, dqr: v, ddqr: v, tau: v, pi: p }};\n    \
-                     {name}::each_function(&arguments, &mut |_, call| call());\n    {name}::each_method(&arguments);\n"
+                     {name}::each_function(&arguments, &mut |_, call| call());\n    {name}::each_method(&arguments);\n    {name}::each_helper(\"mass\", v[0]);\n"
                 );
             }
         }

@@ -17,7 +17,8 @@ use syn::{FnArg, Item, ItemFn, Pat, Type, TypeArray, TypeReference, Visibility};
 /// the module runs: neither specialised for its caller nor evaluated at compile time.
 pub fn calls(module: &str) -> String {
     let file = syn::parse_file(module).expect("an emitted module is a Rust file");
-    let visits = public(&file.items).map(visit);
+    let (helpers, functions): (Vec<_>, Vec<_>) = public(&file.items).partition(|function| is_helper(function));
+    let (visits, helpers) = (functions.into_iter().map(visit), helpers.into_iter().map(help));
     let tokens = quote! {
         /// Arguments for every function of the module.
         #[derive(Clone, Copy, Debug)]
@@ -42,8 +43,37 @@ pub fn calls(module: &str) -> String {
         pub fn each_function(arguments: &Arguments, visit: &mut dyn FnMut(&'static str, &mut dyn FnMut())) {
             #(#visits)*
         }
+
+        /// Calls the functions of names and bodies, which compute nothing of the arm.
+        pub fn each_helper(name: &str, number: Real) {
+            let (name, number) = (core::hint::black_box(name), core::hint::black_box(number));
+            let _ = (name, number);
+            #(#helpers)*
+        }
     };
     prettyplease::unparse(&syn::parse2(tokens).expect("calls are a Rust file"))
+}
+
+/// Whether a function takes a name or the numbers of a body, not states of the arm.
+fn is_helper(function: &ItemFn) -> bool {
+    function.sig.ident == "parameter_index" || function.sig.ident == "payload_parameters"
+}
+
+/// The call of such a function, with one name and one number.
+fn help(function: &ItemFn) -> impl ToTokens {
+    let name = &function.sig.ident;
+    let values = function.sig.inputs.iter().map(|input| match input {
+        FnArg::Typed(input) => match &*input.ty {
+            Type::Reference(of) if matches!(&*of.elem, Type::Path(_)) => quote!(name),
+            Type::Reference(of) => {
+                let filled = filled(&of.elem, "number");
+                quote!(&#filled)
+            }
+            of => filled(of, "number").to_token_stream(),
+        },
+        FnArg::Receiver(_) => unreachable!("emitted functions are free"),
+    });
+    quote!(core::hint::black_box(#name(#(#values),*));)
 }
 
 /// The public functions among these items.
@@ -112,7 +142,7 @@ fn visit(function: &ItemFn) -> impl quote::ToTokens {
         match &*input.ty {
             // Memory of the caller that the function writes to.
             Type::Reference(TypeReference { mutability: Some(_), elem, .. }) => {
-                let zeros = zeros(elem);
+                let zeros = filled(elem, "0.0");
                 memory = Some(quote!(let mut #argument: #elem = #zeros;));
                 values.push(quote!(core::hint::black_box(&mut #argument)));
             }
@@ -128,13 +158,13 @@ fn visit(function: &ItemFn) -> impl quote::ToTokens {
     }
 }
 
-/// Zeros of a type: a number, or arrays of it.
-fn zeros(of: &Type) -> impl ToTokens {
-    fn text(of: &Type) -> String {
+/// A value of a type: a number, or arrays of it.
+fn filled(of: &Type, number: &str) -> syn::Expr {
+    fn text(of: &Type, number: &str) -> String {
         match of {
-            Type::Array(TypeArray { elem, len, .. }) => format!("[{}; {}]", text(elem), len.to_token_stream()),
-            _ => "0.0".into(),
+            Type::Array(TypeArray { elem, len, .. }) => format!("[{}; {}]", text(elem, number), len.to_token_stream()),
+            _ => number.into(),
         }
     }
-    syn::parse_str::<syn::Expr>(&text(of)).expect("an array of zeros is an expression")
+    syn::parse_str(&text(of, number)).expect("an array of numbers is an expression")
 }
