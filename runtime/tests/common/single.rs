@@ -47,7 +47,8 @@ impl<const N: usize> Dynamics<N> for Single<N> {
         narrow(self.0.friction(&wide(dq)))
     }
     fn equations_of_motion(&self, q: &Vector<N>, dq: &Vector<N>) -> EquationsOfMotion<f32, N> {
-        unimplemented!("no test in f32 takes it: {q} {dq}")
+        let EquationsOfMotion { inertia, coriolis, gravity } = self.0.equations_of_motion(&wide(q), &wide(dq));
+        EquationsOfMotion { inertia: narrow(inertia), coriolis: narrow(coriolis), gravity: narrow(gravity) }
     }
     fn inverse_dynamics(&self, q: &Vector<N>, dq: &Vector<N>, ddq: &Vector<N>) -> Vector<N> {
         narrow(self.0.inverse_dynamics(&wide(q), &wide(dq), &wide(ddq)))
