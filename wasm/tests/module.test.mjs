@@ -24,7 +24,7 @@ test("the module asks for nothing", () => {
     assert.deepEqual(WebAssembly.Module.imports(compiled), []);
 });
 
-for (const name of folder("../../robots/")) {
+for (const name of folder("../../robots/").filter((name) => name.endsWith(".yaml"))) {
     const own = { name, text: text(`../../robots/${name}`) };
     test(`${name}: verdict and summary`, () => {
         const { files } = JSON.parse(run(name, own.text, ["check", name, "--format", "json"]).printed);
