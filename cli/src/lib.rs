@@ -314,6 +314,9 @@ Exit codes: 0 done, 1 the description, the options or a log is faulty, or parame
         /// Leave faulty rows out, with a warning
         #[arg(long)]
         skip_bad: bool,
+        /// Free the estimates of the noise of positions by the reference of the drives, columns `qr_JOINT`
+        #[arg(long)]
+        instruments: bool,
         /// Keep parameters that the logs do not show
         #[arg(long)]
         accept_unexcited: bool,
@@ -575,8 +578,9 @@ fn run(command: Command) -> u8 {
         Command::Export { file, format, out } => export::run(&file, format, out.as_ref()),
         Command::Verify { description, module, language } => commands::verify::run(&description, &module, language),
         Command::Excite { file, asked } => commands::excite::run(&file, &asked),
-        Command::Identify { file, logs, options, validate, load, out, report, skip_bad, accept_unexcited } => {
-            let asked = commands::identify::Asked { logs, options, validate, load, report, out, skip_bad, accept_unexcited };
+        Command::Identify { file, logs, options, validate, load, out, report, skip_bad, instruments, accept_unexcited } => {
+            let asked =
+                commands::identify::Asked { logs, options, validate, load, report, out, skip_bad, instruments, accept_unexcited };
             commands::identify::run(&file, &asked)
         }
         Command::Time { file, path, asked } => commands::time::run(&file, path.as_deref(), &asked),

@@ -38,6 +38,8 @@ pub struct Estimate<'a> {
     pub arm: &'a Arm,
     /// Filtered stretches.
     pub pieces: &'a [Piece],
+    /// The same along the reference of the drives, where columns along it are instruments.
+    pub along_reference: Option<&'a [Piece]>,
     /// The logs.
     pub runs: &'a [Run],
     /// Number of sessions.
@@ -95,6 +97,7 @@ impl<'a> Estimate<'a> {
         Estimate {
             arm,
             pieces,
+            along_reference: None,
             runs,
             sessions,
             columns,
@@ -473,7 +476,16 @@ impl<'a> Estimate<'a> {
     pub fn finish(&mut self) -> (Equations, Solution, Covariance) {
         let n = self.arm.dof();
         let (equations, _) = self.equations(None);
-        let gram = self.fit(&equations);
+        let mut gram = self.fit(&equations);
+        let projected = self.with_instruments(&equations);
+        if let Some(projected) = &projected {
+            // Weights are those of the residuals behind the instruments.
+            for _ in 0..2 {
+                gram = Sums::new(projected, &self.active).gram(&self.weights);
+                (self.weights, self.spreads) = equations.weights(&equations.residuals(&self.active, &solve_fast(&gram)), n);
+            }
+            gram = Sums::new(projected, &self.active).gram(&self.weights);
+        }
         let mut start = DVector::zeros(self.active.len());
         let nominal = &self.arm.combination * self.arm.nominal();
         for (k, &place) in self.active.iter().enumerate() {
@@ -484,6 +496,7 @@ impl<'a> Estimate<'a> {
         let solution = solve(&gram, &start);
         self.take(&solution.x);
         let residuals = equations.residuals(&self.active, &solution.x);
+        let equations = projected.unwrap_or(equations);
         let covariance = self.covariance(&equations, &residuals, &solution, n);
         (equations, solution, covariance)
     }

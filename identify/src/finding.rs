@@ -48,6 +48,8 @@ armgen_codegen::codes! {
         UnexcitedJoint Error "unexcited-joint",
         /// Too few blocks of time for the standard errors.
         ShortLog Warning "short-log",
+        /// Estimates that move out of their intervals at half the cutoff.
+        BiasedRegressor Warning "biased-regressor",
         /// Too few rows in motion for the unknowns.
         NoMotion Error "no-motion",
         /// Drive gains without a known load.

@@ -236,7 +236,34 @@ pub fn covariance(
     inverse: &DMatrix<f64>,
     joints: usize,
 ) -> Covariance {
-    let length = (5.0 * correlation_time(equations, residuals, weights, joints)).max(1.0);
+    let scores = scores(equations, active, residuals, weights, block_length(equations, residuals, weights, joints));
+    let blocks = scores.len();
+    let mut meat = DMatrix::zeros(active.len(), active.len());
+    for score in &scores {
+        meat.ger(1.0, score, score, 1.0);
+    }
+    let (free, reach) = reach(blocks, active.len(), joints, 1);
+    let matrix = inverse * meat * inverse * (blocks as f64 / free);
+    Covariance { matrix, blocks, reach }
+}
+
+/// How many blocks are free behind as many unknowns, and half the width of an interval in sigma so that this many of them are as rarely wrong
+/// together as 3 sigma of a normal distribution.
+pub fn reach(blocks: usize, unknowns: usize, joints: usize, verdicts: usize) -> (f64, f64) {
+    let lost = unknowns as f64 / joints as f64;
+    // With fewer blocks than unknowns of a joint nothing is left to estimate from: then one in three counts.
+    let free = (blocks as f64 - lost).max(blocks as f64 / 3.0).max(1.0);
+    let exact = free >= FEW_BLOCKS && verdicts == 1;
+    (free, if exact { 3.0 } else { student(free, (1.0 - THREE_SIGMA) / verdicts as f64) })
+}
+
+/// How long a block lasts whose residuals hardly know those of the next: 1 s, or five times their correlation time, s.
+pub fn block_length(equations: &Equations, residuals: &[f64], weights: &[f64], joints: usize) -> f64 {
+    (5.0 * correlation_time(equations, residuals, weights, joints)).max(1.0)
+}
+
+/// The score A'W r of each block of time.
+pub fn scores(equations: &Equations, active: &[usize], residuals: &[f64], weights: &[f64], length: f64) -> Vec<DVector<f64>> {
     let mut scores: Vec<DVector<f64>> = Vec::new();
     let mut block: Option<(usize, f64)> = None;
     for (k, row) in equations.rows.iter().enumerate() {
@@ -253,17 +280,7 @@ pub fn covariance(
             }
         }
     }
-    let blocks = scores.len();
-    let mut meat = DMatrix::zeros(active.len(), active.len());
-    for score in &scores {
-        meat.ger(1.0, score, score, 1.0);
-    }
-    let lost = active.len() as f64 / joints as f64;
-    // With fewer blocks than unknowns of a joint nothing is left to estimate from: then one in three counts.
-    let free = (blocks as f64 - lost).max(blocks as f64 / 3.0).max(1.0);
-    let matrix = inverse * meat * inverse * (blocks as f64 / free);
-    let reach = if free < FEW_BLOCKS { student(free) } else { 3.0 };
-    Covariance { matrix, blocks, reach }
+    scores
 }
 
 /// The time after which the autocorrelation of the residuals stays below 1/e, the longest of the joints, s.
@@ -285,9 +302,11 @@ fn correlation_time(equations: &Equations, residuals: &[f64], weights: &[f64], j
         .fold(0.0, f64::max)
 }
 
-/// The quantile of Student's t that as much lies within as within 3 sigma of a normal distribution, 99.73 %.
-pub fn student(freedom: f64) -> f64 {
-    let inside = 0.997_300_203_936_74;
+/// What lies within 3 sigma of a normal distribution.
+const THREE_SIGMA: f64 = 0.997_300_203_936_74;
+
+/// The quantile of Student's t that all but a part lies within, both signs together.
+pub fn student(freedom: f64, outside: f64) -> f64 {
     // With t = sqrt(f) tan(u) the density is cos(u)^(f-1), over -pi/2 to pi/2.
     let density = |u: f64| u.cos().max(0.0).powf(freedom - 1.0);
     let integral = |to: f64| {
@@ -311,7 +330,7 @@ pub fn student(freedom: f64) -> f64 {
     let (mut low, mut high) = (0.0, std::f64::consts::FRAC_PI_2);
     for _ in 0..60 {
         let middle = 0.5 * (low + high);
-        if integral(middle) < inside * whole {
+        if integral(middle) < (1.0 - outside) * whole {
             low = middle;
         } else {
             high = middle;
@@ -327,7 +346,8 @@ mod tests {
     /// Quantiles 0.99865 of Student's t, from the closed forms for 1 and 2 degrees of freedom and the normal limit.
     #[test]
     fn student_has_its_closed_forms() {
-        let p: f64 = 0.997_300_203_936_74;
+        let p = super::THREE_SIGMA;
+        let student = |freedom: f64| student(freedom, 1.0 - p);
         let one = (std::f64::consts::FRAC_PI_2 * p).tan();
         assert!((student(1.0) / one - 1.0).abs() < 1e-6, "{} {one}", student(1.0));
         let two = p * (2.0 / (1.0 - p * p)).sqrt();

@@ -167,6 +167,11 @@ pub fn identify(arm: &Arm, inputs: &[Input], options: &Options, findings: &mut F
             pieces = all(cutoff);
         }
     }
+    let along_reference: Option<Vec<Piece>> = options.instruments.then(|| {
+        let along = |log: &Log| Log { q: log.reference.clone().unwrap_or_default(), dq: None, ..log.clone() };
+        let logs = logs.iter().map(along).enumerate();
+        logs.flat_map(|(place, log)| prepare(arm, place, &log, cutoff, &flawed[place], true)).collect()
+    });
     let mut estimate = Estimate::new(arm, &pieces, &runs, sessions.len());
     fix(arm, options, &mut estimate);
     estimate.activate(&simple);
@@ -223,6 +228,12 @@ pub fn identify(arm: &Arm, inputs: &[Input], options: &Options, findings: &mut F
         }
         estimate.choose(&mut chosen, Friction::Cubic);
         activate(&mut estimate, &chosen);
+        // Where the others were missing, they may have hidden it.
+        estimate.renew_sizes();
+        estimate.choose(&mut chosen, Friction::Load);
+        activate(&mut estimate, &chosen);
+        estimate.renew_sizes();
+        activate(&mut estimate, &chosen);
         estimate.prune(&mut chosen, &[Friction::Load, Friction::Cubic, Friction::Stribeck]);
         activate(&mut estimate, &chosen);
     }
@@ -230,6 +241,7 @@ pub fn identify(arm: &Arm, inputs: &[Input], options: &Options, findings: &mut F
         estimate.delays();
         activate(&mut estimate, &chosen);
     }
+    estimate.along_reference = along_reference.as_deref();
     let identify_gains = has_currents && options.gains == Gains::Identify;
     let mut gain_intervals: Vec<Interval> = Vec::new();
     let mut of_gains = None;
@@ -281,10 +293,43 @@ pub fn identify(arm: &Arm, inputs: &[Input], options: &Options, findings: &mut F
         let text = format!("{} independent stretches of time: intervals use Student's t", covariance.blocks);
         findings.push(Finding::new(Code::ShortLog, &logs[0].name, text, "log 30 s or more for narrow intervals"));
     }
+    // A term of friction that was left out may be there, too small to be seen: the intervals of all others allow for it.
+    let wider = (options.friction.is_none() && !identify_gains).then(|| {
+        let mut wider = estimate.clone();
+        wider.activate(&|joint, term| chosen[joint].contains(&term) || matches!(term, Friction::Load | Friction::Cubic));
+        let (.., covariance) = wider.finish();
+        (wider, covariance)
+    });
     let interval = |k: usize| {
-        let (value, sigma) = (estimate.x[estimate.active[k]], matrix[(k, k)].max(0.0).sqrt());
-        Interval { value, sigma, low: value - reach * sigma, high: value + reach * sigma, excited: true }
+        let place = estimate.active[k];
+        let value = estimate.x[place];
+        let around = |middle: f64, matrix: &DMatrix<f64>, k: usize, reach: f64| {
+            let sigma = matrix[(k, k)].max(0.0).sqrt();
+            let (low, high) = ((middle - reach * sigma).min(value), (middle + reach * sigma).max(value));
+            Interval { value, sigma, low, high, excited: true }
+        };
+        match wider.as_ref().and_then(|(wider, of)| Some((wider, of, wider.active.binary_search(&place).ok()?))) {
+            Some((wider, of, k)) => around(wider.x[place], &of.matrix, k, of.reach),
+            None => around(value, &matrix, k, reach),
+        }
     };
+    if !options.instruments && !identify_gains {
+        let moved = estimate.moved_by_half_the_cutoff(&equations, &solution, cutoff, &|k, x| {
+            let Interval { low, high, .. } = interval(k);
+            x < low || x > high
+        });
+        if !moved.is_empty() {
+            let names: Vec<String> = moved.iter().take(3).map(|&k| column_name(&estimate, k)).collect();
+            let text = format!(
+                "{} of {} estimates leave their intervals at half the cutoff: {}",
+                moved.len(),
+                estimate.active.len(),
+                names.join(", ")
+            );
+            let help = "noise of the positions bends them, or what the model lacks: log the reference of the drives, too (`qr_JOINT`), and give `--instruments`, or choose a lower `cutoff`";
+            findings.push(Finding::new(Code::BiasedRegressor, &logs[0].name, text, help));
+        }
+    }
     let (unexcited, hidden) = directions(&estimate, &solution, &matrix);
     let mut found = Identified {
         velocities: estimate.velocities.clone(),
@@ -394,6 +439,15 @@ fn start_gains(arm: &Arm, inputs: &[Input], options: &Options, has_currents: boo
             }
         }
         Gains::Identify => {
+            if options.instruments {
+                let help = "give the gains, or leave `instruments` out";
+                findings.push(Finding::new(
+                    Code::BadOptions,
+                    name,
+                    "`instruments` and `gains: identify` exclude each other",
+                    help,
+                ));
+            }
             if !inputs.iter().any(|input| input.load.mass.is_some()) {
                 let text = "currents alone determine ratios of gains and masses, and no gain";
                 let help =
@@ -503,12 +557,7 @@ fn turned_throughout(estimate: &Estimate<'_>) -> bool {
 /// Directions that the logs do not show, in words, and for each active column whether it is part of one.
 fn directions(estimate: &Estimate<'_>, solution: &Solution, matrix: &DMatrix<f64>) -> (Vec<(Vec<String>, String)>, Vec<bool>) {
     let arm = estimate.arm;
-    let name = |k: usize| match estimate.columns[estimate.active[k]] {
-        Column::Base(base) => arm.base[base].name.clone(),
-        Column::Load(log, k) => format!("{} of the load of log {}", crate::body::NAMES[k], log + 1),
-        Column::Friction(_, j, term) => format!("{}.friction.{}", arm.joints[j].name, term.key()),
-        Column::Gain(j) => format!("{}.motor.gain", arm.joints[j].name),
-    };
+    let name = |k: usize| column_name(estimate, k);
     let mut hidden = vec![false; estimate.active.len()];
     let mut found = Vec::new();
     for direction in &solution.hidden {
@@ -543,6 +592,17 @@ fn directions(estimate: &Estimate<'_>, solution: &Solution, matrix: &DMatrix<f64
         }
     }
     (found, hidden)
+}
+
+/// The name of an active column.
+fn column_name(estimate: &Estimate<'_>, k: usize) -> String {
+    let arm = estimate.arm;
+    match estimate.columns[estimate.active[k]] {
+        Column::Base(base) => arm.base[base].name.clone(),
+        Column::Load(log, k) => format!("{} of the load of log {}", crate::body::NAMES[k], log + 1),
+        Column::Friction(_, j, term) => format!("{}.friction.{}", arm.joints[j].name, term.key()),
+        Column::Gain(j) => format!("{}.motor.gain", arm.joints[j].name),
+    }
 }
 
 /// Terms of friction that no motion tells from other parameters, as far as they are asked for or have a value.

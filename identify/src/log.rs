@@ -1,6 +1,6 @@
 //! Logs: CSV with a line of names, read as a stream.
 //!
-//! Columns are found by name: `t`, `q_JOINT`, `dq_JOINT`, `tau_JOINT` or `current_JOINT`. Every fault has its line and its place in it.
+//! Columns are found by name: `t`, `q_JOINT`, `dq_JOINT`, `tau_JOINT` or `current_JOINT`, and `qr_JOINT`. Every fault has its line and its place in it.
 
 use std::collections::BTreeMap;
 use std::io::BufRead;
@@ -46,6 +46,8 @@ pub struct Format {
     pub scales: Scales,
     /// Whether a faulty row is a gap, and no error.
     pub skip_bad: bool,
+    /// Whether the reference of the drives is read, too.
+    pub with_reference: bool,
     /// The first and the last stamp that are used, s.
     pub span: [Option<f64>; 2],
 }
@@ -65,6 +67,8 @@ pub struct Log {
     pub q: Vec<Vec<f64>>,
     /// Rates, by joint; none where the log has none.
     pub dq: Option<Vec<Vec<f64>>>,
+    /// The positions that the drives were to follow, by joint, where they are asked for.
+    pub reference: Option<Vec<Vec<f64>>>,
     /// Torques (N m, N) or currents (A), by joint.
     pub effort: Vec<Vec<f64>>,
     /// Whether they are currents.
@@ -83,10 +87,16 @@ enum Signal {
     Rate(usize),
     Torque(usize),
     Current(usize),
+    Reference(usize),
 }
 
-const PREFIXES: [(&str, fn(usize) -> Signal); 4] =
-    [("q_", Signal::Position), ("dq_", Signal::Rate), ("tau_", Signal::Torque), ("current_", Signal::Current)];
+const PREFIXES: [(&str, fn(usize) -> Signal); 5] = [
+    ("q_", Signal::Position),
+    ("dq_", Signal::Rate),
+    ("tau_", Signal::Torque),
+    ("current_", Signal::Current),
+    ("qr_", Signal::Reference),
+];
 
 /// The fields of a line: where each begins, and its text.
 fn fields(line: &str, separator: char) -> Vec<(usize, &str)> {
@@ -107,6 +117,7 @@ pub fn read(name: &str, mut from: impl BufRead, format: &Format) -> (Log, Findin
     let n = format.joints.len();
     log.q = vec![Vec::new(); n];
     log.effort = vec![Vec::new(); n];
+    log.reference = format.with_reference.then(|| vec![Vec::new(); n]);
     let mut hash = Sha256::new();
     let mut number = 0;
     let mut bytes = Vec::new();
@@ -172,7 +183,7 @@ struct Place<'a> {
 struct Header {
     separator: char,
     names: Vec<String>,
-    /// What each used column holds, and how many of the SI unit its numbers are; in the order time, q, dq, effort.
+    /// What each used column holds, and how many of the SI unit its numbers are; in the order time, q, dq, effort, reference.
     used: Vec<(usize, f64)>,
     unused: Vec<String>,
     is_current: bool,
@@ -193,7 +204,8 @@ impl Header {
             let signal = if name == "t" {
                 Some(Signal::Time)
             } else {
-                PREFIXES.iter().find_map(|(prefix, signal)| {
+                let known = PREFIXES.iter().filter(|(prefix, _)| format.with_reference || *prefix != "qr_");
+                { known }.find_map(|(prefix, signal)| {
                     let joint = name.strip_prefix(prefix)?;
                     let found = joints.iter().position(|known| *known == joint);
                     if found.is_none() {
@@ -232,6 +244,9 @@ impl Header {
         for i in 0..joints.len() {
             let unit = if is_current { current } else { scale(i, torque, force) };
             wanted.push((format!("{}{}", effort.0, joints[i]), effort.1(i), unit));
+        }
+        for i in (0..joints.len()).filter(|_| format.with_reference) {
+            wanted.push((format!("qr_{}", joints[i]), Signal::Reference(i), scale(i, angle, length)));
         }
         let lacking: Vec<&(String, Signal, f64)> = wanted.iter().filter(|(_, signal, _)| !of.contains_key(signal)).collect();
         for (name, ..) in &lacking {
@@ -335,4 +350,7 @@ fn store(log: &mut Log, row: &[f64], number: usize, format: &Format, findings: &
         take(dq);
     }
     take(&mut log.effort);
+    if let Some(reference) = &mut log.reference {
+        take(reference);
+    }
 }

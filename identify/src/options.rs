@@ -72,11 +72,13 @@ pub struct Options {
     pub keep: Vec<String>,
     /// Entries with given values.
     pub fixed: Vec<(String, f64)>,
+    /// Whether columns along the reference of the drives are instruments.
+    pub instruments: bool,
     /// Whether faulty rows of logs are gaps.
     pub skip_bad: bool,
 }
 
-const KEYS: [Key; 12] = [
+const KEYS: [Key; 13] = [
     optional("logs"),
     optional("validate"),
     optional("columns"),
@@ -88,6 +90,7 @@ const KEYS: [Key; 12] = [
     optional("delay"),
     optional("keep"),
     optional("fixed"),
+    optional("instruments"),
     optional("skip_bad"),
 ];
 const LOG: [Key; 5] =
@@ -194,11 +197,15 @@ impl Reading<'_> {
                 self.reader.wrong_kind(node, key, "fixed", "a mapping", "write for instance `fixed: {elbow.friction.offset: 0}`");
             }
         }
-        if let Some((key, node)) = fields.get("skip_bad") {
-            let words = [("true", true), ("false", false)];
-            let found = self.reader.choice(node, key, "skip_bad", &words, Code::WrongKind, "`true` or `false`");
-            options.skip_bad = found.is_some_and(|found| found.value);
-        }
+        options.instruments = self.flag(fields, "instruments");
+        options.skip_bad = self.flag(fields, "skip_bad");
+    }
+
+    fn flag(&mut self, fields: &Fields<'_>, name: &'static str) -> bool {
+        let Some((key, node)) = fields.get(name) else { return false };
+        let found =
+            self.reader.choice(node, key, name, &[("true", true), ("false", false)], Code::WrongKind, "`true` or `false`");
+        found.is_some_and(|found| found.value)
     }
 
     fn log(&mut self, node: &Node) -> Option<LogOptions> {

@@ -102,6 +102,47 @@ fn terms_are_found_where_they_are_and_nowhere_else() {
         }
     }
     println!("{right} of {all} intervals hold; missed: {missed:?}");
-    assert!(right * 100 >= 95 * all, "{right} of {all}");
+    assert!(right * 1000 >= 985 * all, "{right} of {all}");
     assert!(missed.len() <= 10, "{missed:?}");
+}
+
+/// Drawn at random (seed 7 of `benches/identification.py`).
+const FIVE: &str = "
+name: arm
+convention: modified
+gravity: [0, 0, -9.81]
+joints:
+  - {name: j1, type: revolute, a: 0.3, alpha: 0, d: 0, theta: 0,
+     link: {mass: 5.6192, com: [-0.0327, -0.0156, 0.0051], inertia: {xx: 0.020066, yy: 0.072527, zz: 0.077775}},
+     motor: {ratio: 50, inertia: 4e-05}, friction: {viscous: 5.3074, coulomb: 2.3714, offset: -0.2768, cubic: 0.0463}}
+  - {name: j2, type: revolute, a: 0.2682, alpha: 0.5769, d: 0, theta: 0,
+     link: {mass: 3.186, com: [-0.1461, 0.0043, -0.0312], inertia: {xx: 0.032785, yy: 0.033128, zz: 0.028963}},
+     motor: {ratio: 50, inertia: 3e-05}, friction: {viscous: 3.1432, coulomb: 1.6413, offset: -0.3303, load: 0.0403, cubic: 0.1248}}
+  - {name: j3, type: revolute, a: 0, alpha: -pi/2, d: 0, theta: 0,
+     link: {mass: 3.8969, com: [-0.0157, -0.0031, 0.0109], inertia: {xx: 0.017883, yy: 0.014117, zz: 0.0094334}},
+     motor: {ratio: 50, inertia: 2.25e-05}, friction: {viscous: 1.3906, coulomb: 1.8306, offset: 0.1446, load: 0.0376}}
+  - {name: j4, type: revolute, a: 0.0852, alpha: -pi/2, d: 0.0923, theta: 0,
+     link: {mass: 3.3003, com: [0.0365, -0.0261, 0.0445], inertia: {xx: 0.0057036, yy: 0.0054886, zz: 0.0035916}},
+     motor: {ratio: 80, inertia: 1.688e-05}, friction: {viscous: 1.9358, coulomb: 2.1006, offset: 0.1358, load: 0.0442, cubic: 0.098}}
+regressor: base
+";
+
+/// The absence of other terms hides some of load friction at first. Without noise all terms are found in the end.
+#[test]
+#[ignore = "wide"]
+fn terms_that_others_hid_are_found() {
+    let arm = arm(FIVE);
+    for seed in [3, 50] {
+        let found = noisy(FIVE, seed, 0.0);
+        for (joint, of) in arm.joints.iter().enumerate() {
+            for (term, truth) in Friction::ALL.into_iter().zip(of.friction) {
+                let Some(truth) = truth.filter(|truth| *truth != 0.0) else { continue };
+                let value = found.friction.iter().find(|of| (of.joint, of.term) == (joint, term)).map(|of| of.value.value);
+                assert!(
+                    value.is_some_and(|value| (value - truth).abs() < 0.02 * truth.abs() + 0.01),
+                    "seed {seed}, joint {joint}, {term:?}: {value:?} and not {truth}"
+                );
+            }
+        }
+    }
 }

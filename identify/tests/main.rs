@@ -6,6 +6,7 @@ mod codes;
 mod coverage;
 mod excite;
 mod friction;
+mod instruments;
 mod options;
 mod text;
 mod truth;

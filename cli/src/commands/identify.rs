@@ -31,6 +31,7 @@ pub(crate) struct Asked {
     pub(crate) report: Option<PathBuf>,
     pub(crate) out: Option<PathBuf>,
     pub(crate) skip_bad: bool,
+    pub(crate) instruments: bool,
     pub(crate) accept_unexcited: bool,
 }
 
@@ -52,6 +53,7 @@ fn run_or_exit_code(file: &Path, asked: &Asked) -> Result<u8, u8> {
         columns: chosen.columns.clone(),
         scales: chosen.scales,
         skip_bad: chosen.skip_bad,
+        with_reference: chosen.instruments,
         span: [None, None],
     };
     let mut findings = Findings::default();
@@ -70,7 +72,12 @@ fn run_or_exit_code(file: &Path, asked: &Asked) -> Result<u8, u8> {
     let mut held_out: Vec<Log> = Vec::new();
     let validate = asked.validate.iter().cloned().chain(chosen.validate.iter().map(|path| folder.join(path)));
     for path in validate {
-        held_out.push(read(&path, &path.display().to_string(), &format, &mut findings)?);
+        held_out.push(read(
+            &path,
+            &path.display().to_string(),
+            &Format { with_reference: false, ..format.clone() },
+            &mut findings,
+        )?);
     }
     if findings.has_errors() {
         return Err(refused(&findings));
@@ -189,6 +196,7 @@ fn options_of(asked: &Asked) -> Result<(Options, PathBuf), u8> {
         }
     };
     chosen.skip_bad |= asked.skip_bad;
+    chosen.instruments |= asked.instruments;
     Ok((chosen, folder))
 }
 
