@@ -32,6 +32,11 @@ impl Decimal {
         Decimal { text: "0".into(), value: 0.0, span: Span::default() }
     }
 
+    /// 1, standing nowhere.
+    pub(crate) fn one() -> Decimal {
+        Decimal { text: "1".into(), value: 1.0, span: Span::default() }
+    }
+
     /// Whether it is 0.
     pub(crate) fn is_zero(&self) -> bool {
         self.value == 0.0
