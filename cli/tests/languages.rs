@@ -183,13 +183,11 @@ fn a_word_of_one_language_is_a_name_in_another() {
     }
 }
 
-/// The commands and the programs of the page about two arms, from its URDF.
-#[test]
-#[ignore = "wide"]
-fn two_arms_go_from_a_urdf_to_torques() {
-    let page = include_str!("../../docs/two-arms.md");
-    let folder = folder("two_arms");
-    fs::write(folder.join("two_arms.urdf"), include_str!("../../tests/data/trees/two_arms.urdf")).expect("the file");
+/// Runs the commands and the programs of a page about `NAME.urdf`, in C and in Python: both print so many lines, the same ones.
+#[track_caller]
+fn run_tutorial(name: &str, page: &str, urdf: &str, lines: usize) -> PathBuf {
+    let folder = folder(name);
+    fs::write(folder.join(format!("{name}.urdf")), urdf).expect("the file");
     let blocks = |kind: &str| -> Vec<&str> {
         page.split(&format!("```{kind}\n")).skip(1).map(|rest| rest.split("```").next().expect("its end")).collect()
     };
@@ -198,7 +196,7 @@ fn two_arms_go_from_a_urdf_to_torques() {
         commands.iter().filter_map(|line| Some(line.strip_prefix("armgen ")?.split(' ').collect())).collect();
     assert_eq!(own.len(), 4, "{commands:?}");
     own.iter().for_each(|arguments| _ = check(&folder, arguments, 0));
-    let description = fs::read_to_string(folder.join("two_arms.yaml")).expect("the description");
+    let description = fs::read_to_string(folder.join(format!("{name}.yaml"))).expect("the description");
     assert!(description.contains(blocks("yaml")[0]), "{description}");
     let said = |command: &mut Command| {
         let output = command.current_dir(&folder).output().ok()?;
@@ -210,14 +208,34 @@ fn two_arms_go_from_a_urdf_to_torques() {
     let compiled = said(Command::new("cc").args(["-O2", "-Wall", "-Wextra", "-Werror", "caller.c", "-lm", "-o", "caller"]));
     let Some(in_c) = compiled.and_then(|_| said(&mut Command::new(folder.join("caller")))) else {
         println!("no compiler of C: apt install gcc");
-        return;
+        return folder;
     };
-    assert_eq!(in_c.lines().count(), 5, "{in_c}");
+    assert_eq!(in_c.lines().count(), lines, "{in_c}");
     let has_numpy = Command::new("python3").args(["-c", "import numpy"]).output().is_ok_and(|output| output.status.success());
     match has_numpy {
         true => assert_eq!(said(Command::new("python3").arg("caller.py")), Some(in_c)),
         false => println!("no NumPy: apt install python3-numpy"),
     }
+    folder
+}
+
+#[test]
+#[ignore = "wide"]
+fn a_gripper_goes_from_a_urdf_to_torques() {
+    let (page, urdf) = (include_str!("../../docs/gripper.md"), include_str!("../../tests/data/trees/gripper.urdf"));
+    let folder = run_tutorial("gripper", page, urdf, 4);
+    // The coupling comes back: under other names of tips the description is the same.
+    check(&folder, &["export", "gripper.yaml", "--format", "urdf", "--out", "back.urdf"], 0);
+    check(&folder, &["import", "back.urdf", "--tip", "tcp", "--tip", "left", "--out", "back.yaml"], 0);
+    let back = fs::read_to_string(folder.join("back.yaml")).expect("the description");
+    assert!(back.contains("    follows: {left_finger: 1}\n"), "{back}");
+}
+
+#[test]
+#[ignore = "wide"]
+fn two_arms_go_from_a_urdf_to_torques() {
+    let (page, urdf) = (include_str!("../../docs/two-arms.md"), include_str!("../../tests/data/trees/two_arms.urdf"));
+    let folder = run_tutorial("two_arms", page, urdf, 5);
     check(&folder, &["export", "two_arms.yaml", "--format", "urdf", "--out", "back.urdf"], 0);
     check(&folder, &["import", "back.urdf", "--tip", "left=left_hand", "--tip", "right=right_hand", "--out", "back.yaml"], 0);
     check(&folder, &["show", "back.yaml", "left_direct_kinematics", "right_operational_inertia"], 0);

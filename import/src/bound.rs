@@ -15,6 +15,7 @@
 //! of gravity changes no torque and is left out.
 //!
 //! The box: q within its limits (none: ±pi rad, ±1 m), |dq| up to the velocity limit (none: 4 rad/s, 1 m/s), |ddq| ≤ 10.
+//! A joint that follows another one moves by its factor times that, and its torque counts at the joint with the coordinate.
 //! Sums are floats, rounded up at the end.
 
 use crate::body::Body;
@@ -22,6 +23,8 @@ use crate::chain::{Arm, Row};
 use crate::pose::{Pose, Turn};
 use crate::written::Written;
 
+/// Largest |ddq| of a coordinate.
+const ACCELERATION: f64 = 10.0;
 /// The factor of a bound: more than all roundings here.
 const UP: f64 = 1.0 + 1e-9;
 
@@ -73,6 +76,23 @@ fn box_of(row: &Row) -> (f64, f64) {
     (q, row.motion.velocity.as_ref().map_or(otherwise.1, |v| v.value))
 }
 
+/// The joint with the coordinate that a joint moves with, and sizes of factor and offset.
+struct Coordinate {
+    row: usize,
+    factor: f64,
+    offset: f64,
+}
+
+fn coordinate(arm: &Arm, row: usize) -> Coordinate {
+    let mut found = Coordinate { row, factor: 1.0, offset: 0.0 };
+    while let Some(follows) = &arm.rows[found.row].follows {
+        found.offset += found.factor * follows.offset.value.abs();
+        found.factor *= follows.factor.value.abs();
+        found.row = follows.leader;
+    }
+    found
+}
+
 /// A quantity of both arms: its largest size, and how far the two can be apart.
 #[derive(Clone, Copy, Debug, Default)]
 struct Pair {
@@ -121,8 +141,13 @@ pub(crate) fn of(arm: &Arm) -> Bound {
         return Bound::default();
     }
     let ways: Vec<Way> = arm.rows.iter().map(|row| way(&row.origin)).collect();
-    let boxes: Vec<(f64, f64)> = arm.rows.iter().map(box_of).collect();
-    let slide = |j: usize| if arm.rows[j].prismatic { boxes[j].0 } else { 0.0 };
+    let coordinates: Vec<Coordinate> = (0..arm.rows.len()).map(|row| coordinate(arm, row)).collect();
+    let of_row = |Coordinate { row, factor, offset }: &Coordinate| {
+        let (q, dq) = box_of(&arm.rows[*row]);
+        [factor * q + offset, factor * dq, factor * ACCELERATION]
+    };
+    let boxes: Vec<[f64; 3]> = coordinates.iter().map(of_row).collect();
+    let slide = |j: usize| if arm.rows[j].prismatic { boxes[j][0] } else { 0.0 };
     let (mut farthest, mut most_turned) = (0.0f64, 0.0f64);
     for end in &arm.ends {
         let tool = way(&end.tool);
@@ -137,7 +162,7 @@ pub(crate) fn of(arm: &Arm) -> Bound {
         }
         (farthest, most_turned) = (farthest.max(flange), most_turned.max(orientation));
     }
-    let (joint, torque) = torque(arm, &ways, &boxes);
+    let (joint, torque) = torque(arm, &ways, &boxes, &coordinates);
     Bound { flange: farthest * UP, orientation: most_turned * UP, torque: torque * UP, joint }
 }
 
@@ -177,20 +202,19 @@ enum Axes {
 }
 
 /// The joint whose torque can change most, and by how much.
-fn torque(arm: &Arm, ways: &[Way], boxes: &[(f64, f64)]) -> (usize, f64) {
+fn torque(arm: &Arm, ways: &[Way], boxes: &[[f64; 3]], coordinates: &[Coordinate]) -> (usize, f64) {
     let rows = 0..arm.rows.len();
     let steps = rows.clone().flat_map(|j| [Step::Origin(j), Step::Axis(j)]).chain([Step::Bodies]);
     let mut sums = vec![0.0; arm.rows.len()];
     for step in steps {
         let [link, base] = [Axes::Link, Axes::Base].map(|axes| differences(arm, ways, boxes, step, axes));
-        rows.clone().for_each(|j| sums[j] += link[j].min(base[j]));
+        rows.clone().for_each(|j| sums[coordinates[j].row] += coordinates[j].factor * link[j].min(base[j]));
     }
     sums.into_iter().enumerate().fold((0, 0.0), |worst, (j, sum)| if sum > worst.1 { (j, sum) } else { worst })
 }
 
 /// Newton-Euler over magnitudes: by how much each torque changes at one step.
-fn differences(arm: &Arm, ways: &[Way], boxes: &[(f64, f64)], step: Step, axes: Axes) -> Vec<f64> {
-    const ACCELERATION: f64 = 10.0;
+fn differences(arm: &Arm, ways: &[Way], boxes: &[[f64; 3]], step: Step, axes: Axes) -> Vec<f64> {
     let n = arm.rows.len();
     let when = |now: bool, offset: f64| if now { offset } else { 0.0 };
     let gravity_turned = when(step == Step::Bodies, arm.gravity_offset);
@@ -204,7 +228,7 @@ fn differences(arm: &Arm, ways: &[Way], boxes: &[(f64, f64)], step: Step, axes: 
     for (j, row) in arm.rows.iter().enumerate() {
         let base = (Pair::default(), Pair::default(), falling, 0.0);
         let (mut w, mut dw, mut a, mut link) = row.parent.map_or(base, |parent| links[parent]);
-        let ((q, dq), eta) = (boxes[j], when(step == Step::Axis(j), row.motion.axis_offset));
+        let ([q, dq, ddq], eta) = (boxes[j], when(step == Step::Axis(j), row.motion.axis_offset));
         let origin = step == Step::Origin(j);
         let turned = when(origin, ways[j].turned);
         let mut lever = Pair::new(ways[j].length, when(origin, ways[j].moved)).turned(link);
@@ -224,7 +248,7 @@ fn differences(arm: &Arm, ways: &[Way], boxes: &[(f64, f64)], step: Step, axes: 
         let felt = if j == 0 && origin { (seen - about_gravity(arm)).max(0.0) } else { seen };
         a = a.turned(felt);
         (w, dw) = (w.turned(seen), dw.turned(seen));
-        let (rate, change) = (Pair::new(dq, axis * dq), Pair::new(ACCELERATION, axis * ACCELERATION));
+        let (rate, change) = (Pair::new(dq, axis * dq), Pair::new(ddq, axis * ddq));
         if row.prismatic {
             a = a.plus(change).plus(Pair::new(2.0, 0.0).times(w).times(rate));
         } else {

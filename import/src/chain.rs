@@ -2,6 +2,7 @@
 //!
 //! A fixed or locked joint is one more pose; branches that hang on a moving link are attached to it. Nothing is multiplied out here.
 
+mod followers;
 mod gravity;
 mod locks;
 mod names;
@@ -24,6 +25,8 @@ use crate::tree::{Kind, Role, Tree};
 use crate::values::Values;
 use crate::xml::{beginning, shown};
 use crate::{Code, Options};
+use followers::Followers;
+pub(crate) use followers::Follows;
 pub(crate) use locks::Lock;
 
 /// Poses in one list of robot.yaml.
@@ -57,6 +60,8 @@ pub(crate) struct Row {
     pub(crate) motion: Motion,
     /// The row whose link carries it; `None` for the base.
     pub(crate) parent: Option<usize>,
+    /// The row whose joint it follows.
+    pub(crate) follows: Option<Follows>,
     /// The link's own body, if the file gives it one.
     pub(crate) body: Option<Body>,
     pub(crate) attached: Vec<Attached>,
@@ -103,6 +108,8 @@ pub(crate) struct Arm {
     pub(crate) boundless: usize,
     /// How many efforts of 0 were left out of an arm without masses.
     pub(crate) unknown_efforts: usize,
+    /// How many efforts of joints that follow others were left out.
+    pub(crate) led_efforts: usize,
     /// Joints of the base that do not move anything of the chain.
     pub(crate) left_out_branches: usize,
     /// Notes for the user.
@@ -116,6 +123,7 @@ struct Builder<'r> {
     tree: &'r Tree,
     format: &'r dyn Format,
     locks: locks::Locks,
+    followers: Followers,
     /// Values of the unlocked joints outside the chain, as far as requested.
     led: BTreeMap<usize, locks::Led>,
     values: Values<'r>,
@@ -148,7 +156,7 @@ pub(crate) fn arm(
         kinematics_alone: massless_file,
         unknown_efforts: 0,
     };
-    let locks = locks::Locks::new(tree, format, &options.lock, &mut values)?;
+    let mut locks = locks::Locks::new(tree, format, &options.lock, &mut values)?;
     let diagnostics = &mut *values.diagnostics;
     let base = named_link(tree, options.base.as_deref(), "--base", diagnostics)?;
     let base = match base {
@@ -179,20 +187,45 @@ pub(crate) fn arm(
         path.extend(of_tip.into_iter().filter(|joint| !path.contains(joint)).collect::<Vec<_>>());
     }
     let tip = tips[0].1;
+    let followers = Followers::take_in((tree, format), base, &mut path, &mut locks, &mut values);
     let moving: Vec<usize> = path.iter().copied().filter(|&j| tree.joints[j].kind.moves() && locks.of(j).is_none()).collect();
     if let Some(&joint) = moving.get(MAX_JOINTS) {
-        let message =
-            format!("{} joints move between base and tip, more than the {MAX_JOINTS} that can be generated", moving.len());
+        let others = if followers.taken.is_empty() { "" } else { ", and with them" };
+        let message = format!(
+            "{} joints move between base and tip{others}, more than the {MAX_JOINTS} that can be generated",
+            moving.len()
+        );
         let help = "lock some with `--lock JOINT=0`, or choose another `--base` or `--tip`";
-        diagnostics.push(Diagnostic::new(Code::TooManyJoints, tree.joints[joint].span, message, "one too many", help));
+        values.report(Code::TooManyJoints, tree.joints[joint].span, message, "one too many", help);
         return None;
     }
-    format.check(&Extent { moving: &moving, carriers: &moved(tree, &path, &moving), tree }, diagnostics);
+    if !followers.taken.is_empty() {
+        let names: Vec<String> = followers.taken.iter().map(|&joint| format!("`{}`", shown(&tree.joints[joint].name))).collect();
+        notes.push(format!("joints beside the chain that move with it: {}; `--lock JOINT=VALUE` holds one", names.join(", ")));
+    }
+    format.check(&Extent { moving: &moving, carriers: &moved(tree, &path, &moving), tree }, values.diagnostics);
     let on_path = path.iter().copied().collect();
     let led = BTreeMap::new();
-    let mut builder =
-        Builder { tree, format, locks, led, values, on_path, locked: Vec::new(), massless: Vec::new(), options, bodies: 0 };
-    let (rows, ends, on_base) = builder.rows(base, &path, &tips)?;
+    let mut builder = Builder {
+        tree,
+        format,
+        locks,
+        followers,
+        led,
+        values,
+        on_path,
+        locked: Vec::new(),
+        massless: Vec::new(),
+        options,
+        bodies: 0,
+    };
+    let (mut rows, ends, on_base) = builder.rows(base, &path, &tips)?;
+    let mut led_efforts = 0;
+    if rows.iter().any(|row| row.follows.is_some()) && !builder.values.diagnostics.has_errors() {
+        followers::check(&mut rows, &mut builder.values);
+        let led = rows.iter_mut().filter(|row| row.follows.is_some());
+        led_efforts = led.filter_map(|row| row.motion.effort.take()).count();
+    }
     if let (true, Some(&joint)) = (massless_file, moving.first()) {
         let message = "no link of the file has an `inertial`: the description is of kinematics alone";
         let help = "give the moving links masses, centres and inertias where forces matter";
@@ -232,6 +265,7 @@ pub(crate) fn arm(
         computed,
         boundless,
         unknown_efforts,
+        led_efforts,
         left_out_branches,
         notes,
         assumed,
@@ -301,7 +335,7 @@ impl Builder<'_> {
         let mut rows: Vec<Row> = Vec::new();
         // Of each link the row that moves it, and the poses between that row's link frame and its own.
         let mut places: BTreeMap<usize, (Option<usize>, Vec<Pose>)> = BTreeMap::from([(base, (None, Vec::new()))]);
-        let (mut links, mut names) = (Vec::new(), BTreeSet::new());
+        let (mut moved, mut of_joint, mut names) = (Vec::new(), BTreeMap::new(), BTreeSet::new());
         for &index in path {
             let joint = &tree.joints[index];
             let (mut owner, mut pending) = places[&joint.parent].clone();
@@ -311,13 +345,13 @@ impl Builder<'_> {
             pending.retain(|pose| !pose.is_nothing());
             self.check_length(&pending, joint.span)?;
             if moves {
-                self.refuse_mimic(index);
                 let mut row = self.row(index, std::mem::take(&mut pending));
                 row.name = identifier(&joint.name, &mut names, is_free_name);
                 row.parent = owner;
                 owner = Some(rows.len());
+                of_joint.insert(index, rows.len());
                 rows.push(row);
-                links.push(joint.child);
+                moved.push(index);
             } else {
                 pending.extend(self.standing(index, true));
                 pending.retain(|pose| !pose.is_nothing());
@@ -332,8 +366,9 @@ impl Builder<'_> {
             }
             places.insert(joint.child, (owner, pending));
         }
-        for (row, link) in rows.iter_mut().zip(links) {
-            self.complete(link, row);
+        for (row, joint) in rows.iter_mut().zip(moved) {
+            self.complete(tree.joints[joint].child, row);
+            row.follows = self.followers.of_row(joint, &of_joint);
         }
         let mut names = BTreeSet::new();
         let mut ends = Vec::new();
@@ -366,16 +401,6 @@ impl Builder<'_> {
         None
     }
 
-    /// A joint that follows another one cannot move by itself.
-    fn refuse_mimic(&mut self, index: usize) {
-        let joint = &self.tree.joints[index];
-        if let Some((_, span)) = self.format.leader(index) {
-            let message = format!("the joint `{}` of the chain follows another one", shown(&joint.name));
-            let help = format!("lock it where it is to stand: `--lock {}=0`", shown(&joint.name));
-            self.values.report(Code::Mimic, span, message, "", help);
-        }
-    }
-
     /// A moving joint without its bodies.
     fn row(&mut self, index: usize, origin: Vec<Pose>) -> Row {
         let joint = &self.tree.joints[index];
@@ -388,6 +413,7 @@ impl Builder<'_> {
             origin,
             motion: self.format.motion(index, &mut self.values),
             parent: None,
+            follows: None,
             body: None,
             attached: Vec::new(),
             unreadable: false,
@@ -399,10 +425,7 @@ impl Builder<'_> {
         let joint = &self.tree.joints[index];
         let lock = self.locks.of(index).cloned();
         if joint.kind == Kind::Fixed {
-            // One that says that it follows another one contradicts itself where that one moves.
-            if !on_path && lock.is_none() {
-                self.following(index);
-            }
+            self.warn_of_fixed_follower(index);
             return None;
         }
         if joint.kind == Kind::Other {
@@ -504,7 +527,7 @@ impl Builder<'_> {
 
     /// Warns of a joint that the file moves with another one, and that a lock holds while that one moves: with the mass that then stands still.
     fn warn_of_frozen(&mut self, index: usize) {
-        let Some(leader) = self.moving_leader(index) else { return };
+        let Some(leader) = self.moving_leader(index).filter(|_| !self.locks.rests(index)) else { return };
         let mass = self.mass_below(index);
         if mass == 0.0 {
             return;
@@ -514,6 +537,15 @@ impl Builder<'_> {
         let message = format!("the joint `{name}` follows `{leader}`, and is locked: {mass} kg stand still that the file moves");
         let help = "torques and accelerations are not those of the file; frames of the chain are";
         self.values.report(Code::ChangesMotion, joint.span, message, "locked", help);
+    }
+
+    /// Warns of a fixed joint that the file lets follow one that moves.
+    fn warn_of_fixed_follower(&mut self, index: usize) {
+        let Some((leader, (_, span))) = self.moving_leader(index).zip(self.format.leader(index)) else { return };
+        let (name, leader) = (shown(&self.tree.joints[index].name), shown(&self.tree.joints[leader].name));
+        let message = format!("the joint `{name}` is fixed, and its `mimic` names `{leader}`, which moves");
+        let help = "it stands still, as in other programs; if it is to move, its type is `revolute` or `prismatic`";
+        self.values.report(Code::ChangesMotion, span, message, "not used", help);
     }
 
     /// The joint of the chain that moves and that a joint follows, be it through others.

@@ -55,7 +55,7 @@ codes! {
         SeveralTips Error "several-tips",
         /// A joint that neither turns nor slides about one axis.
         UnsupportedJoint Error "unsupported-joint",
-        /// A joint that follows another one.
+        /// A joint that follows another one as no joint of an arm can.
         Mimic Error "mimic",
         /// An axis without direction.
         ZeroAxis Error "zero-axis",
@@ -84,6 +84,8 @@ codes! {
         ZeroLimit Warning "zero-limit",
         /// A velocity limit of 100, 1000 and so on, which is taken as unknown, or position limits beyond any arm, which are taken as none.
         PlaceholderLimit Warning "placeholder-limit",
+        /// Limits of a joint that follows another one, which are narrower than those of that one, or allow it no motion.
+        FollowerLimits Warning "follower-limits",
         /// A decimal that is nearly a multiple of pi/12, and taken as written.
         RoundedAngle Warning "rounded-angle",
         /// A link that is taken to have no mass.

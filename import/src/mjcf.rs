@@ -11,6 +11,7 @@
 
 mod classes;
 mod effects;
+mod equalities;
 mod geometry;
 mod names;
 mod turns;
@@ -26,6 +27,7 @@ use roxmltree::Node;
 
 use self::classes::{Classes, Element};
 use self::effects::Disabled;
+use self::equalities::Equality;
 use crate::format::{Extent, Format, Motion, Part};
 use crate::number::Decimal;
 use crate::pose::{nothing, Pose, Turn};
@@ -108,6 +110,8 @@ pub(crate) struct Mjcf<'a, 'i> {
     links: Vec<Held<'a, 'i>>,
     joints: Vec<Placed<'a, 'i>>,
     sites: BTreeMap<&'a str, usize>,
+    /// Of joints that follow others the elements that make them do so.
+    equalities: BTreeMap<usize, Equality<'a, 'i>>,
     left_out: OnceCell<BTreeMap<String, usize>>,
 }
 
@@ -129,6 +133,7 @@ pub(crate) fn read<'a, 'i>(root: Node<'a, 'i>, diagnostics: &mut Diagnostics) ->
         links: vec![Held::World],
         joints: Vec::new(),
         sites: BTreeMap::new(),
+        equalities: BTreeMap::new(),
         left_out: OnceCell::new(),
     };
     let mut tree = Tree::new(root.attribute("model").unwrap_or("robot"));
@@ -143,7 +148,8 @@ pub(crate) fn read<'a, 'i>(root: Node<'a, 'i>, diagnostics: &mut Diagnostics) ->
     for world in worlds {
         reader.inside(world, 0, None, world.attribute("childclass"));
     }
-    let Reader { mjcf, tree, .. } = reader;
+    let Reader { mut mjcf, tree, .. } = reader;
+    mjcf.equalities = equalities::of_joints(&mjcf, &tree);
     (diagnostics.errors() == before).then_some((tree, mjcf))
 }
 
@@ -554,6 +560,14 @@ impl Format for Mjcf<'_, '_> {
         self.joints[joint].joint.map_or_else(String::new, |element| shown(self.kind_word(element)))
     }
 
+    fn leader(&self, joint: usize) -> Option<(&str, Span)> {
+        self.equalities.get(&joint).map(|equality| (equality.leader_name, place(equality.node)))
+    }
+
+    fn ratio(&self, joint: usize, values: &mut Values<'_>) -> (Option<Decimal>, Decimal) {
+        self.equalities.get(&joint).map_or((None, Decimal::zero()), |equality| equalities::ratio(self, joint, equality, values))
+    }
+
     fn bodies(&self, link: usize, values: &mut Values<'_>) -> Vec<Part> {
         let Held::Body(node) = self.links[link] else { return Vec::new() };
         effects::refuse_compensation(node, values);
@@ -600,7 +614,11 @@ impl Format for Mjcf<'_, '_> {
         let joints = moving.iter().filter_map(|&joint| self.joints[joint].joint);
         let named: Vec<(&str, Element<'_, '_>)> =
             joints.map(|element| (element.node.attribute("name").unwrap_or_default(), element)).collect();
-        effects::switched_off(self, &named)
+        let mut lines = effects::switched_off(self, &named);
+        if moving.iter().any(|joint| self.equalities.contains_key(joint)) {
+            lines.push("equalities of joints are rigid here: `solref` and `solimp` are left out".into());
+        }
+        lines
     }
 
     fn check(&self, extent: &Extent<'_>, diagnostics: &mut Diagnostics) {
@@ -608,7 +626,7 @@ impl Format for Mjcf<'_, '_> {
     }
 
     fn left_out(&self) -> BTreeMap<String, usize> {
-        self.left_out.get_or_init(|| effects::left_out(self.root)).clone()
+        self.left_out.get_or_init(|| effects::left_out(self.root, self.equalities.len())).clone()
     }
 }
 

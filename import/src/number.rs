@@ -1,6 +1,8 @@
 //! Numbers of a file: their digits as they stand, in the spelling of expressions, and the float next to them for what only compares.
 
 use armgen_codegen::diagnostic::{Diagnostic, Diagnostics};
+use armgen_codegen::document::yaml::Scalar;
+use armgen_codegen::document::{parse_expression, Expression, ExpressionKind, Operator};
 use armgen_codegen::exact::{Number, Rational};
 use armgen_codegen::source::Span;
 
@@ -32,6 +34,11 @@ impl Decimal {
         Decimal { text: "0".into(), value: 0.0, span: Span::default() }
     }
 
+    /// 1, standing nowhere.
+    pub(crate) fn one() -> Decimal {
+        Decimal { text: "1".into(), value: 1.0, span: Span::default() }
+    }
+
     /// Whether it is 0.
     pub(crate) fn is_zero(&self) -> bool {
         self.value == 0.0
@@ -45,9 +52,25 @@ impl Decimal {
         digits(whole) && fraction.bytes().all(|b| b == b'0')
     }
 
-    /// Its exact value.
+    /// Its exact value; the text may be an expression of decimals and degrees.
     pub(crate) fn exact(&self) -> Number {
-        exact(&self.text)
+        if self.text.bytes().all(|b| b.is_ascii_digit() || matches!(b, b'-' | b'.' | b'e')) {
+            return exact(&self.text);
+        }
+        let scalar = Scalar { text: self.text.clone(), plain: true, verbatim: None };
+        parse_expression(&scalar, self.span).map_or_else(|_| Number::zero(), |expression| value(&expression))
+    }
+}
+
+/// The exact value of sums and products of decimals and degrees.
+fn value(expression: &Expression) -> Number {
+    match &expression.kind {
+        ExpressionKind::Decimal(x) => Number::from(x.clone()),
+        ExpressionKind::Negate(a) => -&value(a),
+        ExpressionKind::Degrees(a) => value(a).times(&(&Number::pi() * &Number::from(Rational::from(1) / Rational::from(180)))),
+        ExpressionKind::Binary(Operator::Add, a, b) => value(a).plus(&value(b)),
+        ExpressionKind::Binary(Operator::Multiply, a, b) => value(a).times(&value(b)),
+        other => unreachable!("import writes no {other:?}"),
     }
 }
 

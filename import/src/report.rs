@@ -6,8 +6,9 @@ use armgen_codegen::source::{Source, Span};
 use serde_json::{json, Map, Value};
 
 use crate::bound::Bound;
-use crate::chain::{Arm, Attached, End, Row};
+use crate::chain::{Arm, Attached, End, Follows, Row};
 use crate::format::Format;
+use crate::pose::factor;
 use crate::snap::Snapped;
 
 /// The parts that were taken, changed and left out.
@@ -89,11 +90,22 @@ pub(crate) fn of(source: &Source, format: &dyn Format, arm: &Arm, bound: Bound) 
         .iter()
         .map(|lock| placed(lock.span, vec![("joint", json!(lock.joint)), ("value", json!(lock.text))]))
         .collect();
-    let joints: Vec<Value> =
-        arm.rows.iter().map(|row| placed(row.span, vec![("name", json!(row.name)), ("source", json!(row.joint))])).collect();
+    let joint = |row: &Row| {
+        let mut entries = vec![("name", json!(row.name)), ("source", json!(row.joint))];
+        if let Some(Follows { leader, factor, offset, .. }) = &row.follows {
+            let follows = json!({ "joint": arm.rows[*leader].name, "multiplier": factor.text, "offset": offset.text });
+            entries.push(("follows", follows));
+        }
+        placed(row.span, entries)
+    };
+    let joints: Vec<Value> = arm.rows.iter().map(joint).collect();
     let rounded: Vec<Value> = if arm.gravity_rounded { vec![json!({"what": "gravity", "digits": 17})] } else { Vec::new() };
     let mut left_out = format.left_out();
-    for (what, count) in [("position limits beyond any arm", arm.boundless), ("effort limits of 0", arm.unknown_efforts)] {
+    for (what, count) in [
+        ("position limits beyond any arm", arm.boundless),
+        ("effort limits of 0", arm.unknown_efforts),
+        ("effort limits of joints that follow others", arm.led_efforts),
+    ] {
         if count > 0 {
             left_out.insert(what.to_owned(), count);
         }
@@ -138,6 +150,10 @@ fn words(source: &Source, arm: &Arm, bound: Bound, left_out: &BTreeMap<String, u
         arm.rows.iter().filter(|row| row.name != row.joint).map(|row| format!("`{}` is `{}`", row.joint, row.name)).collect();
     if !renamed.is_empty() {
         lines.push(format!("renamed: {}", list(renamed)));
+    }
+    let led: Vec<String> = arm.rows.iter().filter_map(|row| Some(coupling(row, row.follows.as_ref()?, arm))).collect();
+    if !led.is_empty() {
+        lines.push(format!("joints that follow others: {}", list(led)));
     }
     if !arm.snap.snapped.is_empty() {
         let (name, unit) =
@@ -196,6 +212,16 @@ fn words(source: &Source, arm: &Arm, bound: Bound, left_out: &BTreeMap<String, u
         lines.push(format!("left out: {}", all.join(", ")));
     }
     lines
+}
+
+/// How a joint follows another one, as a formula.
+fn coupling(row: &Row, follows: &Follows, arm: &Arm) -> String {
+    let leader = &arm.rows[follows.leader].name;
+    let offset = if follows.offset.is_zero() { String::new() } else { format!(" + {}", factor(&follows.offset.text)) };
+    match follows.factor.text.as_str() {
+        "1" => format!("`{}` = `{leader}`{offset}", row.name),
+        by => format!("`{}` = {by} `{leader}`{offset}", row.name),
+    }
 }
 
 /// The bodies of a link that are not its own.

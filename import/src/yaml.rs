@@ -5,7 +5,7 @@ use std::fmt::Write;
 use armgen_codegen::source::{Source, Span};
 
 use crate::body::{Body, ELEMENTS};
-use crate::chain::{Arm, End, Row};
+use crate::chain::{Arm, End, Follows, Row};
 use crate::pose::{Pose, Turn};
 use crate::report::Report;
 use crate::written::Written;
@@ -36,6 +36,9 @@ pub(crate) fn text(source: &Source, arm: &Arm, report: &Report) -> String {
     line("joints:");
     for (k, row) in arm.rows.iter().enumerate() {
         joint(&mut line, source, arm, k, row);
+    }
+    for End { row, .. } in arm.ends.iter().filter(|end| end.name.is_none() && end.row + 1 != arm.rows.len()) {
+        line(&format!("tip: {}", arm.rows[*row].name));
     }
     for End { tool, .. } in arm.ends.iter().filter(|end| end.name.is_none() && !is_identity(&end.tool)) {
         line(&format!("tool: {}{}", poses(tool), snapped(source, arm, &spans_of(tool))));
@@ -78,6 +81,12 @@ fn joint(line: &mut impl FnMut(&str), source: &Source, arm: &Arm, k: usize, row:
         line(&format!("    origin: {}{}", poses(&row.origin), snapped(source, arm, &spans_of(&row.origin))));
     }
     line(&format!("    axis: {}{}", vector(&row.motion.axis), note_of_axis(source, arm, row)));
+    if let Some(Follows { leader, factor, offset, .. }) = &row.follows {
+        line(&format!("    follows: {{{}: {}}}", arm.rows[*leader].name, factor.text));
+        if !offset.is_zero() {
+            line(&format!("    offset: {}", offset.text));
+        }
+    }
     let mut limits = Vec::new();
     if let Some([low, high]) = &row.motion.position {
         limits.push(format!("position: [{}, {}]", low.text, high.text));

@@ -166,18 +166,47 @@ fn a_long_line_of_followers_is_refused_in_bounded_time() {
     };
     let import = |text: String, lock: Option<&str>| {
         let lock = lock.map(|joint| (joint.to_owned(), "0.1".to_owned())).into_iter().collect();
-        let options = Options { tip: Some("one".into()), lock, ..Options::default() };
+        let options = Options { tip: Some("one".into()), lock, massless: true, ..Options::default() };
         let (imported, diagnostics) = import(&Source::new("robot.urdf", text), &options);
         assert_eq!(imported.is_some(), !diagnostics.has_errors());
-        diagnostics.iter().map(|diagnostic| diagnostic.code.name()).collect::<Vec<_>>()
+        diagnostics.iter().map(|diagnostic| diagnostic.code.name()).filter(|code| *code != "no-mass").collect::<Vec<_>>()
     };
     let by_two = "multiplier='2' offset='0.1'";
     assert_eq!(import(line(20, "none", by_two).replace(&format!("<mimic joint='none' {by_two}/>"), ""), None).len(), 0);
     assert_eq!(import(line(10_000, "f0", by_two), None), ["mimic"]);
     assert_eq!(import(line(10_000, "none", by_two), None), ["unknown-joint"]);
     assert_eq!(import(line(10_000, "f9000", by_two), Some("f9999")), ["too-large"]);
-    assert!(import(line(900, "j", by_two), None).iter().all(|code| *code == "mimic"));
-    assert_eq!(import(line(900, "j", by_two), None).len(), 900);
+    // What follows the joint of the arm belongs to it.
+    assert_eq!(import(line(10_000, "j", by_two), None), ["too-many-joints"]);
+    assert_eq!(import(line(31, "j", "multiplier='-1'"), None).len(), 0);
+    assert!(import(line(31, "j", by_two), None).iter().all(|code| *code == "mimic"));
+    assert_eq!(import(line(31, "j", by_two), None).len(), 27);
+}
+
+/// A joint that 10 000 others follow, and 10 000 joints on each other, each of which follows the one below it.
+#[test]
+fn many_followers_are_taken_in_in_bounded_time() {
+    let followers = |parent: &dyn Fn(usize) -> String, leader: &dyn Fn(usize) -> String| {
+        let all: String = (0..10_000)
+            .map(|k| {
+                format!(
+                    "<link name='f{k}'/><joint name='f{k}' type='continuous'><parent link='{}'/><child link='f{k}'/><mimic joint='{}'/></joint>",
+                    parent(k),
+                    leader(k)
+                )
+            })
+            .collect();
+        let source = Source::new("robot.urdf", arm("").replace("</robot>", &format!("{all}</robot>")));
+        let (imported, diagnostics) = import(&source, &Options { tip: Some("one".into()), ..Options::default() });
+        assert!(imported.is_none());
+        diagnostics.iter().map(|diagnostic| diagnostic.code.name()).collect::<Vec<_>>()
+    };
+    let below = |k: usize| if k == 0 { "one".to_owned() } else { format!("f{}", k - 1) };
+    let next = |k: usize| if k + 1 == 10_000 { "j".to_owned() } else { format!("f{}", k + 1) };
+    assert_eq!(followers(&|_| "one".into(), &|_| "j".into()), ["too-many-joints"]);
+    assert_eq!(followers(&|_| "base".into(), &|_| "j".into()), ["too-many-joints"]);
+    assert_eq!(followers(&below, &next), ["too-many-joints"]);
+    assert_eq!(followers(&below, &|_| "f9999".into()), ["mimic"]);
 }
 
 #[test]

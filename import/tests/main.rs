@@ -7,4 +7,5 @@ mod convert;
 mod export;
 mod hostile;
 mod import;
+mod mimic;
 mod mjcf;

@@ -157,9 +157,39 @@ fn equalities_that_are_switched_off_are_none() {
             "<mujoco><option><flag {flag}/></option><worldbody><body><joint name='a'/>{body}<body><joint name='b'/>{body}</body></body></worldbody>\
              <equality><joint joint1='a' joint2='b'/></equality></mujoco>"
         );
-        import(&Source::new("model.xml", text), &Options::default()).0.is_some()
+        imported(&text).yaml.contains("follows: {b: 1}")
     };
-    assert!(!with("contact='disable'") && with("equality='disable'") && with("constraint='disable'"));
+    assert!(with("contact='disable'") && !with("equality='disable'") && !with("constraint='disable'"));
+}
+
+/// q1 - ref1 = c0 + c1 (q2 - ref2), as MuJoCo's documentation of `polycoef` has it.
+#[test]
+fn an_equality_of_two_joints_makes_the_first_follow_the_second() {
+    let with = |first: &str, second: &str, polycoef: &str| {
+        let body = "<inertial pos='0 0 0' mass='1' diaginertia='1 1 1'/>";
+        let text = format!(
+            "<mujoco><worldbody><body name='hand'><joint name='turn'/>{body}\
+             <body><joint name='a' {first}/>{body}</body><body name='end'><joint name='b' {second}/>{body}</body></body></worldbody>\
+             <equality><joint joint1='a' joint2='b' {polycoef}/><joint joint1='a' joint2='turn' active='false'/></equality></mujoco>"
+        );
+        let options = Options { tip: Some("end".into()), ..Options::default() };
+        let Imported { yaml, report } = import(&Source::new("model.xml", text), &options).0.expect("an arm");
+        assert_eq!(report.lines().iter().filter(|line| line.contains("`solref`")).count(), 1);
+        assert!(report.lines().iter().all(|line| !line.contains("left out: 2 equality")));
+        let coupling = common::valid(&yaml).coupling.expect("a coupling");
+        let variable = &coupling.variables[2];
+        let factors: Vec<(usize, f64)> = variable.factors.iter().map(|(of, factor)| (*of, factor.to_f64())).collect();
+        assert!(matches!(factors[..], [(1, _)]), "{yaml}");
+        (factors[0].1, variable.offset.to_f64())
+    };
+    let (slide, far) = ("type='slide'", "type='slide' ref='0.5'");
+    assert_eq!(with("", "", ""), (1.0, 0.0));
+    assert_eq!(with("", "", "polycoef='0.25 -2 0 0 0'"), (-2.0, 0.25));
+    assert_eq!(with(slide, far, "polycoef='0.25 -0.3'"), (-0.3, 0.25 + 0.3 * 0.5));
+    assert_eq!(with(far, far, "polycoef='-1 2'"), (2.0, -1.0 + 0.5 - 2.0 * 0.5));
+    let (factor, offset) = with("ref='90'", "ref='-30'", "polycoef='0 2'");
+    assert!(factor == 2.0 && (offset - 150_f64.to_radians()).abs() < 1e-15, "{offset}");
+    assert_eq!(with("range='-90 90'", "range='-60 60' ref='30'", "polycoef='0 1 0 0 0'").0, 1.0);
 }
 
 /// Files by their paths; a missing file is an error.

@@ -14,6 +14,7 @@ mod general_angles;
 mod gravity;
 mod hostile_files;
 mod import_bounds;
+mod imported_couplings;
 mod kinematics_alone;
 mod latex;
 mod layers;

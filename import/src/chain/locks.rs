@@ -8,11 +8,12 @@ use armgen_codegen::document::parse_expression;
 use armgen_codegen::document::yaml::Scalar;
 use armgen_codegen::source::Span;
 
+use super::followers::{report_ring, report_unknown};
 use super::Builder;
 use crate::format::Format;
 use crate::number::Decimal;
 use crate::pose::factor;
-use crate::tree::{Joint, Tree};
+use crate::tree::{Joint, Kind, Tree};
 use crate::values::Values;
 use crate::xml::{beginning, shown};
 use crate::Code;
@@ -34,9 +35,13 @@ impl Lock {
     }
 }
 
-/// The joints that the user locks.
+/// The joints that stand still: those that the user locks, and their followers.
 pub(crate) struct Locks {
     by_joint: BTreeMap<usize, Lock>,
+    /// Of each joint those that follow it, in the order of the file.
+    followers: BTreeMap<usize, Vec<usize>>,
+    /// Joints that follow others with the multiplier 0.
+    resting: BTreeSet<usize>,
 }
 
 impl Locks {
@@ -78,18 +83,47 @@ impl Locks {
                 followers.entry(leader).or_default().push(follower);
             }
         }
-        let mut open: Vec<(usize, Lock)> = by_joint.iter().map(|(joint, lock): (&usize, &Lock)| (*joint, lock.clone())).collect();
+        let mut locks = Locks { by_joint, followers, resting: BTreeSet::new() };
+        let given = locks.by_joint.iter().map(|(joint, lock)| (*joint, lock.clone()));
+        // A fixed joint holds its followers.
+        let fixed = locks.followers.keys().filter(|&&leader| tree.joints[leader].kind == Kind::Fixed);
+        let fixed = fixed
+            .filter(|leader| !locks.by_joint.contains_key(leader))
+            .map(|&leader| (leader, Lock::at_zero(&tree.joints[leader])));
+        let open = given.chain(fixed).collect();
+        locks.spread(tree, format, open, values);
+        (values.diagnostics.errors() == before).then_some(locks)
+    }
+
+    /// Locks the followers of joints that stand still, and theirs.
+    fn spread(&mut self, tree: &Tree, format: &dyn Format, mut open: Vec<(usize, Lock)>, values: &mut Values<'_>) {
         while let Some((leader, at)) = open.pop() {
-            for &follower in followers.get(&leader).into_iter().flatten() {
-                if by_joint.contains_key(&follower) {
+            for &follower in self.followers.get(&leader).into_iter().flatten() {
+                if self.by_joint.contains_key(&follower) {
                     continue;
                 }
                 let Some(lock) = follow(tree, format, follower, &at, values) else { continue };
-                by_joint.insert(follower, lock.clone());
+                self.by_joint.insert(follower, lock.clone());
                 open.push((follower, lock));
             }
         }
-        (values.diagnostics.errors() == before).then_some(Locks { by_joint })
+    }
+
+    /// Holds a joint that follows another one with the multiplier 0, and those that follow it.
+    pub(super) fn rest(&mut self, tree: &Tree, format: &dyn Format, joint: usize, at: Lock, values: &mut Values<'_>) {
+        self.resting.insert(joint);
+        self.by_joint.insert(joint, at.clone());
+        self.spread(tree, format, vec![(joint, at)], values);
+    }
+
+    /// The joints that follow a joint, in the order of the file.
+    pub(super) fn followers(&self, joint: usize) -> &[usize] {
+        self.followers.get(&joint).map_or(&[], Vec::as_slice)
+    }
+
+    /// Whether a joint stands still because its multiplier is 0.
+    pub(super) fn rests(&self, joint: usize) -> bool {
+        self.resting.contains(&joint)
     }
 
     /// The lock of a joint.
@@ -98,11 +132,11 @@ impl Locks {
     }
 }
 
-/// The value of an unlocked joint outside the chain that follows others.
+/// The value of an unlocked joint outside the arm that follows others.
 #[derive(Clone, Debug)]
 pub(super) enum Led {
     At(Lock),
-    /// With this joint of the chain, which moves.
+    /// With this joint of the arm, which moves.
     Moving(usize),
     /// A fault, which is reported.
     Faulty,
@@ -124,13 +158,14 @@ impl Builder<'_> {
             if self.on_path.contains(&at) && tree.joints[at].kind.moves() {
                 break Led::Moving(at);
             }
-            let Some((leader, span)) = format.leader(at) else { break Led::At(Lock::at_zero(&tree.joints[at])) };
+            let leader = format.leader(at).filter(|_| tree.joints[at].kind.moves());
+            let Some((leader, span)) = leader else { break Led::At(Lock::at_zero(&tree.joints[at])) };
             if !on_way.insert(at) {
-                self.report_ring(&way, at, span);
+                report_ring(tree, &way, at, span, &mut self.values);
                 break Led::Faulty;
             }
             let Some(next) = tree.joint(leader) else {
-                self.report_unknown(at, leader, span);
+                report_unknown(tree, at, leader, span, &mut self.values);
                 break Led::Faulty;
             };
             way.push(at);
@@ -149,34 +184,12 @@ impl Builder<'_> {
             Led::Moving(leader) => {
                 let (name, leader) = (shown(&tree.joints[index].name), shown(&tree.joints[leader].name));
                 let span = format.leader(index).map_or(tree.joints[index].span, |(_, span)| span);
-                let mass = self.mass_below(index);
-                let but = if mass > 0.0 {
-                    format!("; its {mass} kg then do not move with `{leader}`, which changes torques")
-                } else {
-                    String::new()
-                };
-                let help = format!("lock it where it is to stand: `--lock {name}=0`{but}");
-                self.values.report(Code::Mimic, span, format!("the joint `{name}` follows `{leader}`, which moves"), "", help);
+                let message = format!("the joint `{name}`, above the base, follows `{leader}`: the base would move");
+                let help = format!("choose a `--base` above it, or lock it where it is to stand: `--lock {name}=0`");
+                self.values.report(Code::Mimic, span, message, "", help);
                 None
             }
         }
-    }
-
-    /// Reports joints that follow each other: those on a way from one on that is met again.
-    fn report_ring(&mut self, way: &[usize], again: usize, span: Span) {
-        let ring = way.iter().skip_while(|joint| **joint != again);
-        let names: Vec<String> = ring.take(8).map(|&joint| format!("`{}`", shown(&self.tree.joints[joint].name))).collect();
-        let message = format!("joints follow each other in a ring: {}", names.join(", "));
-        let help = format!("lock one of them where it is to stand: `--lock {}=0`", shown(&self.tree.joints[again].name));
-        self.values.report(Code::Mimic, span, message, "", help);
-    }
-
-    /// Reports a joint whose leader does not exist.
-    fn report_unknown(&mut self, follower: usize, leader: &str, span: Span) {
-        let message = format!("`mimic` names `{}`, which is no joint of this file", shown(leader));
-        let (meant, name) = (self.tree.meant_joint(leader), shown(&self.tree.joints[follower].name));
-        let help = format!("{meant}; or lock it where it is to stand: `--lock {name}=0`");
-        self.values.report(Code::UnknownJoint, span, message, "", help);
     }
 }
 

@@ -7,7 +7,7 @@ use armgen_codegen::source::Span;
 use roxmltree::Node;
 
 use super::classes::Element;
-use super::{sections, Mjcf, SAVE_COMPILED};
+use super::{equalities, sections, Mjcf, SAVE_COMPILED};
 use crate::format::Extent;
 use crate::values::Values;
 use crate::xml::{attribute, place, shown};
@@ -145,17 +145,16 @@ pub(super) fn check(mjcf: &Mjcf<'_, '_>, extent: &Extent<'_>, diagnostics: &mut 
     let root = mjcf.root;
     let moves = |name: &str| extent.tree.joint(name).is_some_and(|joint| extent.moving.contains(&joint));
     let carrier = |link: Option<usize>| link.and_then(|link| extent.carriers.get(&link).copied());
-    let is_on = |node: Node<'_, '_>| node.attribute("active") != Some("false");
-    let equalities = sections(root, "equality").filter(|_| !mjcf.disabled.equality).flat_map(|n| n.children());
-    for equality in equalities.filter(|n| n.is_element() && is_on(*n)) {
+    for equality in equalities::in_force(mjcf) {
+        if equalities::is_taken(mjcf, equality, extent.tree) {
+            continue;
+        }
         let body = |name: &str| carrier(equality.attribute(name).and_then(|name| extent.tree.link(name)));
         let site = |name: &str| carrier(equality.attribute(name).and_then(|name| mjcf.sites.get(name).copied()));
         let joints = ["joint1", "joint2"].into_iter().filter_map(|name| equality.attribute(name)).any(moves);
         if joints || body("body1") != body("body2") || site("site1") != site("site2") {
-            let what = equality.tag_name().name();
-            let help =
-                "an arm is a tree of joints that move freely: take it out, or hold what it is about with `--lock JOINT=VALUE`";
-            refuse(place(equality), format!("an equality, `{}`, concerns the arm", shown(what)), help, diagnostics);
+            let (message, help) = equalities::refused(equality);
+            refuse(place(equality), message, &help, diagnostics);
         }
     }
     for tendon in sections(root, "tendon").flat_map(|n| n.children()).filter(Node::is_element) {
@@ -194,15 +193,19 @@ pub(super) fn check(mjcf: &Mjcf<'_, '_>, extent: &Extent<'_>, diagnostics: &mut 
     }
 }
 
-/// Counts of elements by their kind, or by their section.
-pub(super) fn left_out(root: Node<'_, '_>) -> BTreeMap<String, usize> {
+/// Counts of elements by their kind, or by their section; so many equalities are taken.
+pub(super) fn left_out(root: Node<'_, '_>, equalities: usize) -> BTreeMap<String, usize> {
     const READ: [&str; 4] = ["compiler", "option", "default", "worldbody"];
     const TAKEN: [&str; 6] = ["body", "frame", "joint", "freejoint", "inertial", "site"];
-    let mut counts = BTreeMap::new();
+    let mut counts: BTreeMap<String, usize> = BTreeMap::new();
     for section in root.children().filter(|n| n.is_element() && !READ.contains(&n.tag_name().name())) {
         let inside = section.children().filter(Node::is_element).count();
         *counts.entry(section.tag_name().name().to_owned()).or_default() += inside.max(1);
     }
+    if let Some(count) = counts.get_mut("equality") {
+        *count -= equalities.min(*count);
+    }
+    counts.retain(|_, count| *count > 0);
     for world in sections(root, "worldbody") {
         for node in world.descendants().skip(1).filter(Node::is_element) {
             let name = node.tag_name().name();

@@ -1,0 +1,140 @@
+//! Joints that follow others: the arm has all that moves with its joints, and the file's factors and offsets digit by digit.
+
+use armgen_codegen::diagnostic::Colour;
+use armgen_codegen::source::Source;
+use armgen_import::{import, Imported, Options};
+
+use crate::common::valid;
+
+const BODY: &str = "<inertial><mass value='1'/><inertia ixx='0.1' iyy='0.1' izz='0.1' ixy='0' ixz='0' iyz='0'/></inertial>";
+
+/// A joint of this name from a link to a link of its name.
+fn joint(name: &str, kind: &str, parent: &str, inside: &str) -> String {
+    format!(
+        "<link name='{name}_link'>{BODY}</link><joint name='{name}' type='{kind}'><parent link='{parent}'/><child link='{name}_link'/>\
+         <axis xyz='0 1 0'/><limit lower='-1' upper='1' velocity='1' effort='1'/>{inside}</joint>\n"
+    )
+}
+
+fn robot(joints: &[String]) -> Source {
+    Source::new("robot.urdf", format!("<robot name='r'><link name='base'/>{}</robot>", joints.concat()))
+}
+
+#[track_caller]
+fn imported(source: &Source, options: &Options) -> Imported {
+    let (imported, diagnostics) = import(source, options);
+    imported.unwrap_or_else(|| panic!("{}", diagnostics.render(source, Colour::Never)))
+}
+
+fn tip(link: &str) -> Options {
+    Options { tip: Some(link.into()), ..Options::default() }
+}
+
+/// The second finger stands before its leader in the file, and hangs beside the chain to either finger.
+fn gripper() -> Source {
+    robot(&[
+        joint("wrist", "continuous", "base", ""),
+        joint("right", "prismatic", "wrist_link", "<mimic joint='left' multiplier='-1.50' offset='0.010'/>"),
+        joint("left", "prismatic", "wrist_link", ""),
+        joint("pad", "fixed", "left_link", ""),
+    ])
+}
+
+#[test]
+fn what_moves_with_the_chain_belongs_to_the_arm() {
+    let Imported { yaml, report } = imported(&gripper(), &tip("pad_link"));
+    insta::with_settings!({prepend_module_to_snapshot => false, omit_expression => true}, {
+        insta::assert_snapshot!("gripper.yaml", yaml);
+    });
+    let arm = valid(&yaml);
+    assert_eq!((arm.joints.len(), arm.dof(), arm.tip.0), (3, 2, 1));
+    let json: serde_json::Value = serde_json::from_str(&report.to_json()).expect("JSON");
+    assert_eq!(json["joints"][2]["follows"], serde_json::json!({ "joint": "left", "multiplier": "-1.50", "offset": "0.010" }));
+    for (options, rows) in [(tip("right_link"), 3), (tip("wrist_link"), 1), (Options { all: true, ..Options::default() }, 3)] {
+        let arm = valid(&imported(&gripper(), &options).yaml);
+        assert_eq!((arm.joints.len(), arm.dof()), (rows, rows.min(2)));
+    }
+}
+
+/// A leader is taken in with the joints above it, and its followers with theirs: also those on the base.
+#[test]
+fn leaders_and_followers_come_with_the_joints_above_them() {
+    let source = robot(&[
+        joint("far", "revolute", "other_link", "<mimic joint='middle' multiplier='2'/>"),
+        joint("other", "revolute", "base", ""),
+        joint("chain", "revolute", "base", "<mimic joint='leader' multiplier='-1'/>"),
+        joint("on", "fixed", "base", ""),
+        joint("above", "revolute", "on_link", ""),
+        joint("leader", "revolute", "above_link", ""),
+        joint("middle", "revolute", "base", "<mimic joint='chain' offset='-0.5'/>"),
+        joint("still", "revolute", "chain_link", ""),
+    ]);
+    let Imported { yaml, report } = imported(&source, &tip("chain_link"));
+    let arm = valid(&yaml);
+    let names: Vec<&str> = arm.joints.iter().map(|joint| joint.name.as_str()).collect();
+    assert_eq!(names, ["chain", "above", "leader", "middle", "other", "far"]);
+    assert_eq!(arm.dof(), 3);
+    let line = "joints that follow others: `chain` = -1 `leader`, `middle` = `chain` + (-0.5), `far` = 2 `middle`";
+    assert!(report.lines().iter().any(|found| found == line), "{:?}", report.lines());
+    let line =
+        "joints beside the chain that move with it: `above`, `leader`, `middle`, `other`, `far`; `--lock JOINT=VALUE` holds one";
+    assert!(report.lines().iter().any(|found| found == line), "{:?}", report.lines());
+}
+
+/// A fixed leader, a locked one, and the multiplier 0 hold a joint, and those that follow it.
+#[test]
+fn what_cannot_move_stands_where_the_file_puts_it() {
+    let line = |leader: &str, factor: &str| {
+        robot(&[
+            joint("first", "revolute", "base", ""),
+            joint("post", "fixed", "base", ""),
+            joint("second", "revolute", "first_link", &format!("<mimic joint='{leader}' multiplier='{factor}' offset='0.25'/>")),
+            joint("third", "revolute", "second_link", "<mimic joint='second' multiplier='2' offset='0.1'/>"),
+            joint("last", "revolute", "third_link", ""),
+        ])
+    };
+    for (leader, factor, lock, second, rows) in [
+        ("post", "3", None, "0.25", 2),
+        ("first", "0", None, "0.25", 2),
+        ("first", "3", Some(("first", "0.5")), "3*0.5 + 0.25", 1),
+        ("first", "3", Some(("second", "0.25")), "0.25", 2),
+    ] {
+        let lock = lock.map(|(joint, value)| (joint.into(), value.into())).into_iter().collect();
+        let imported = imported(&line(leader, factor), &Options { lock, ..tip("last_link") });
+        assert_eq!(valid(&imported.yaml).dof(), rows, "{leader} {factor}");
+        assert!(!imported.yaml.contains("follows:"), "{}", imported.yaml);
+        let words = imported.report.lines().join("\n");
+        let third = if second.contains('*') { format!("2*({second}) + 0.1") } else { format!("2*{second} + 0.1") };
+        assert!(words.contains(&format!("`second` at {second}, `third` at {third}")), "{words}");
+    }
+}
+
+/// The interval of the coordinate is what all limits have in common.
+#[test]
+fn a_follower_whose_limits_allow_its_leader_no_motion_loses_them() {
+    let limited = |multiplier: &str, limits: &str| {
+        let mimic = format!("<mimic joint='left' multiplier='{multiplier}'/>");
+        let right = joint("right", "prismatic", "base", &mimic).replace("lower='-1' upper='1'", limits);
+        robot(&[joint("left", "prismatic", "base", "").replace("lower='-1'", "lower='0'"), right])
+    };
+    let all = Options { all: true, ..Options::default() };
+    for (multiplier, limits, expected, warnings) in [
+        ("1", "lower='0' upper='1'", [0.0, 1.0], 0),
+        ("-1", "lower='-1' upper='0'", [0.0, 1.0], 0),
+        ("-1", "lower='0' upper='1'", [0.0, 1.0], 1),
+        ("2", "lower='-1' upper='1'", [0.0, 0.5], 2),
+        ("-0.1", "lower='-0.05' upper='-0.02'", [0.2, 0.5], 1),
+    ] {
+        let source = limited(multiplier, limits);
+        let (imported, diagnostics) = import(&source, &all);
+        let arm = valid(&imported.expect("an arm").yaml);
+        let limits = arm.coordinates()[0].limits.position.as_ref().expect("limits").each_ref().map(|end| end.to_f64());
+        assert_eq!(limits, expected, "{multiplier}");
+        // With the factor 2 the velocity is limited, too.
+        assert_eq!(
+            diagnostics.iter().filter(|warning| warning.code.name() == "follower-limits").count(),
+            warnings,
+            "{multiplier}"
+        );
+    }
+}

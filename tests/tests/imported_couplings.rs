@@ -1,0 +1,125 @@
+//! A URDF with `mimic`: its equations are those of the same file with all joints free, at q = S p + c, multiplied by S'.
+
+use armgen_codegen::diagnostic::Colour;
+use armgen_codegen::source::Source;
+use armgen_import::{import, Imported, Options};
+use armgen_tests::functions::{Arguments, Functions};
+use armgen_tests::interpreter::Interpreted;
+use armgen_tests::precision::{deviation, REFERENCE};
+use armgen_tests::random::Random;
+
+/// A wrist, two bars that turn against each other and twice as far, and two fingers on the second bar; followers of followers, and one
+/// before its leader.
+const FILE: [(&str, &str, &str, &str); 5] = [
+    ("wrist", "revolute", "base", ""),
+    ("bar", "revolute", "wrist", "<mimic joint='wrist' multiplier='-1' offset='0.3'/>"),
+    ("twice", "revolute", "bar", "<mimic joint='bar' multiplier='-2'/>"),
+    ("right", "prismatic", "twice", "<mimic joint='left' multiplier='-1.5' offset='0.01'/>"),
+    ("left", "prismatic", "twice", ""),
+];
+/// S and c of q = S p + c, by hand, joints in the order of the description.
+const COUPLING: [(&str, [f64; 2], f64); 5] = [
+    ("wrist", [1.0, 0.0], 0.0),
+    ("bar", [-1.0, 0.0], 0.3),
+    ("twice", [2.0, 0.0], -0.6),
+    ("right", [0.0, -1.5], 0.01),
+    ("left", [0.0, 1.0], 0.0),
+];
+
+fn file(angle: &str) -> String {
+    let joints = FILE.iter().enumerate().map(|(k, (name, kind, parent, mimic))| {
+        let (mass, at) = (1.0 + 0.3 * k as f64, 0.05 * (k + 1) as f64);
+        format!(
+            "<link name='{name}'><inertial><origin xyz='{at} 0.02 -0.03'/><mass value='{mass}'/>\
+             <inertia ixx='0.02' iyy='0.03' izz='0.025' ixy='0.001' ixz='0' iyz='0.002'/></inertial></link>\
+             <joint name='{name}' type='{kind}'><parent link='{parent}'/><child link='{name}'/><origin xyz='{at} 0 0.1' rpy='{angle} 0 0'/>\
+             <axis xyz='0 1 0'/><limit lower='-1' upper='1' velocity='1' effort='1'/><dynamics damping='0.5' friction='0.2'/>{mimic}</joint>"
+        )
+    });
+    format!("<robot name='r'><link name='base'/>{}</robot>", joints.collect::<String>())
+}
+
+#[track_caller]
+fn imported(text: &str, snap: f64) -> Imported {
+    let source = Source::new("robot.urdf", text);
+    let (imported, diagnostics) = import(&source, &Options { all: true, snap, ..Options::default() });
+    imported.unwrap_or_else(|| panic!("{}", diagnostics.render(&source, Colour::Never)))
+}
+
+#[track_caller]
+fn robot(yaml: &str) -> Interpreted {
+    Interpreted::new(yaml).unwrap_or_else(|fault| panic!("{fault}\n{yaml}"))
+}
+
+fn random(random: &mut Random, count: usize) -> Vec<f64> {
+    (0..count).map(|_| random.real(-1.0, 1.0)).collect()
+}
+
+/// S p.
+fn led(p: &[f64]) -> Vec<f64> {
+    COUPLING.iter().map(|(_, row, _)| row[0] * p[0] + row[1] * p[1]).collect()
+}
+
+/// S' f.
+fn projected(forces: &[f64]) -> Vec<f64> {
+    (0..2).map(|a| COUPLING.iter().zip(forces).map(|((_, row, _), force)| row[a] * force).sum()).collect()
+}
+
+/// S' M S.
+fn projected_matrix(matrix: &[f64]) -> Vec<f64> {
+    let columns = [[1.0, 0.0], [0.0, 1.0]].map(|p| {
+        let column: Vec<f64> = matrix.chunks(5).map(|row| row.iter().zip(led(&p)).map(|(m, s)| m * s).sum()).collect();
+        projected(&column)
+    });
+    vec![columns[0][0], columns[1][0], columns[0][1], columns[1][1]]
+}
+
+#[test]
+fn equations_are_those_of_the_free_file_projected() {
+    let text = file("1.5708");
+    let coupled = imported(&text, Options::SNAP).yaml;
+    let mut without = text.clone();
+    FILE.iter().for_each(|(.., mimic)| without = without.replace(mimic, ""));
+    let free = imported(&without, Options::SNAP).yaml;
+    let names = COUPLING.map(|(name, ..)| format!("  - name: {name}  # joint"));
+    for yaml in [&coupled, &free] {
+        let found: Vec<&str> = yaml.lines().filter(|line| names.iter().any(|name| line.starts_with(name))).collect();
+        assert!(found.len() == 5 && found.iter().zip(&names).all(|(line, name)| line.starts_with(name)), "{yaml}");
+    }
+    let (coupled, free) = (robot(&coupled), robot(&free));
+    let mut numbers = Random::new(3);
+    for _ in 0..10 {
+        let [p, dp, ddp] = [(); 3].map(|()| random(&mut numbers, 2));
+        let q = led(&p).iter().zip(COUPLING).map(|(q, (.., offset))| q + offset).collect();
+        let all = Arguments { q, dq: led(&dp), ddq: led(&ddp), ..Arguments::default() };
+        let own = Arguments { q: p, dq: dp, ddq: ddp, ..Arguments::default() };
+        for function in ["gravity", "friction", "inverse_dynamics"] {
+            let off = deviation(&coupled.call(function, &own), &projected(&free.call(function, &all)));
+            assert!(off < REFERENCE, "{function}: {off:e}");
+        }
+        for function in ["inertia_matrix", "coriolis_matrix"] {
+            let off = deviation(&coupled.call(function, &own), &projected_matrix(&free.call(function, &all)));
+            assert!(off < REFERENCE, "{function}: {off:e}");
+        }
+    }
+}
+
+/// Torques of followers count at their leaders, and followers move by their factors.
+#[test]
+#[ignore = "wide"]
+fn the_bound_of_snapping_covers_followers() {
+    let text = file("1.57080");
+    let (snapped, exact) = (imported(&text, Options::SNAP), imported(&text, 0.0));
+    let report: serde_json::Value = serde_json::from_str(&snapped.report.to_json()).expect("JSON");
+    let bound = report["bound"]["torque"].as_f64().expect("a bound");
+    let (snapped, exact) = (robot(&snapped.yaml), robot(&exact.yaml));
+    let mut numbers = Random::new(4);
+    let mut largest: f64 = 0.0;
+    for _ in 0..100 {
+        let ddq = random(&mut numbers, 2).into_iter().map(|ddq| 10.0 * ddq).collect();
+        let own = Arguments { q: random(&mut numbers, 2), dq: random(&mut numbers, 2), ddq, ..Arguments::default() };
+        let [a, b] = [&snapped, &exact].map(|robot| robot.call("inverse_dynamics", &own));
+        largest = a.iter().zip(&b).map(|(a, b)| (a - b).abs()).fold(largest, f64::max);
+    }
+    assert!(largest <= bound && bound < 500.0 * largest, "{largest:e}, bound {bound:e}");
+}
