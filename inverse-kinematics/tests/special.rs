@@ -96,4 +96,30 @@ in_both_scalars! {
         }
         assert!(doubtful * if SINGLE { 3 } else { 50 } <= regular, "{doubtful} of {regular} random poses are doubtful");
     }
+
+    /// The geometry of a Jaco, with a wrist of 60 degrees. Where joints 2, 3 and 5 are at 0 or pi several regular postures nearly share a root of the
+    /// determinant, in both arrangements: rounding hides them.
+    #[test]
+    fn postures_that_share_a_root_are_not_lost() {
+        if SINGLE {
+            return;
+        }
+        let rows = [(0.0, 0.2755, 0.0, RIGHT), (0.0, 0.0, 0.41, 2.0 * RIGHT), (0.0, -0.0098, 0.0, RIGHT), (0.0, -0.2502, 0.0, RIGHT / 1.5), (0.0, -0.0858, 0.0, RIGHT / 1.5), (0.0, -0.2116, 0.0, 2.0 * RIGHT)];
+        let arm = Arm::standard(&rows, &[]);
+        let ways = general_ways(&arm, 8);
+        let random = &mut Random(3);
+        let mut lost = 0;
+        for i in 0..200 {
+            let mut q = arm.posture(random);
+            for (joint, place) in [(1, i % 2), (2, 1 - i % 2), (4, 1)] {
+                q[joint] = 2.0 * RIGHT * place as f64 + 10f64.powf(random.between(-13.0, -5.0));
+            }
+            let found = general_arm(&ways, &arm.at(&q), arm.length());
+            let sure = !found.near && !found.continuum && found.found().iter().all(|branch| !branch.double);
+            assert!(found.count > 0 || !sure, "{q:?}: unreachable");
+            let values: Vec<_> = q.iter().enumerate().map(|(i, q)| arm.value(i, *q)).collect();
+            lost += usize::from(sure && !found.found().iter().any(|other| apart(&other.joints, &values) < 1e-4));
+        }
+        assert_eq!(lost, 0);
+    }
 }

@@ -431,6 +431,10 @@ const BESIDE: Real = if UNIT_ROUNDOFF < 1e-10 { 1e-5 } else { 4e-3 };
 /// The same the other way, further.
 const FURTHER_BESIDE: Real = if UNIT_ROUNDOFF < 1e-10 { -3e-4 } else { -1e-2 };
 
+/// The same beside a crowd of roots, either way.
+const BESIDE_CROWD: Real = if UNIT_ROUNDOFF < 1e-10 { 3e-3 } else { 3e-2 };
+const FURTHER_BESIDE_CROWD: Real = if UNIT_ROUNDOFF < 1e-10 { -2e-2 } else { -6e-2 };
+
 /// A displacement by about as much, in no particular direction.
 fn moved_by(x: Real) -> Frame {
     let (ca, sa) = small_turn(0.7 * x);

@@ -186,8 +186,9 @@ pub fn determinant_on_circle(links: &[Frame; 6], prismatic: [bool; 6], length: R
     result
 }
 
-/// More rounding than this in the determinant calls for another arrangement.
-const MOST_NOISE: Real = 1e7 * UNIT_ROUNDOFF;
+/// More rounding than this in the determinant calls for another arrangement. Random poses stay below a hundredth of it; where roots crowd so that
+/// several look like one, or like none, the noise is ten times as much and more.
+const MOST_NOISE: Real = 1e4 * UNIT_ROUNDOFF;
 
 /// A root that leaves an equation of norm 1 unmet by more than this is none of the arm: u^(1/4), since a root near a double one is right to
 /// sqrt(u), and its kernel loses another half of that.

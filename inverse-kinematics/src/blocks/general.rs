@@ -22,23 +22,28 @@ pub fn general_arm(arrangements: &[Arrangement<6>; 2], t: &Frame, length: Real) 
     }
     found.miss = found.miss.min(other.found.miss);
     found.continuum = one.free && other.free;
-    // The second is sure of itself and knows all that the first has found, or both found the same, an even number, double ones aside.
+    // The second is sure of itself and knows all that the first has found, or both found the same, an even number, double ones aside. Where rounding
+    // hides roots it may hide them from both.
     let single = found.found().iter().filter(|branch| !branch.double).count();
-    let agreed = one.found.count == found.count && other.found.count == found.count && single % 2 == 0;
+    let quiet = one.noise <= MOST_NOISE && other.noise <= MOST_NOISE;
+    let agreed = quiet && one.found.count == found.count && other.found.count == found.count && single % 2 == 0;
     let settled = one.complete || other.complete && other.found.count == found.count || agreed && !one.free && !other.free;
     found.near = !settled || found.miss <= 64.0 * CLOSED * length;
-    add_from_beside(&mut found, first, t, length);
+    add_from_beside(&mut found, first, t, length, !quiet);
     found
 }
 
-/// Adds what closes the loop from the solutions at two poses beside it. Where solutions share a root of the determinant, though they are regular,
-/// beside it each has a root of its own.
+/// Adds what closes the loop from the solutions at poses beside it. Where solutions share a root of the determinant, though they are regular,
+/// beside it each has a root of its own. `crowded`: rounding hides roots over more than that.
 #[cold]
 #[inline(never)]
-fn add_from_beside(found: &mut Branches<6, 16>, way: &Arrangement<6>, t: &Frame, length: Real) {
+fn add_from_beside(found: &mut Branches<6, 16>, way: &Arrangement<6>, t: &Frame, length: Real, crowded: bool) {
     let links = way.links_at(t);
     let closing = Loop { links: &links, prismatic: way.prismatic, target: [0.0; 3], length };
-    for by in [BESIDE, FURTHER_BESIDE] {
+    for by in [BESIDE, FURTHER_BESIDE, BESIDE_CROWD, FURTHER_BESIDE_CROWD] {
+        if by.abs() > FURTHER_BESIDE.abs() && !crowded {
+            continue;
+        }
         let mut moved = moved_by(by);
         for row in &mut moved {
             row[3] *= length;
