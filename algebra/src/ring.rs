@@ -30,6 +30,7 @@ mod calculus;
 mod constants;
 pub mod count;
 mod dependence;
+mod elementary;
 mod evaluate;
 
 use std::collections::{BTreeMap, BTreeSet, HashMap};
@@ -38,6 +39,7 @@ use std::sync::Arc;
 
 use crate::exact::{Number, Polynomial};
 use crate::scramble::scramble;
+pub use elementary::Elementary;
 use field::{Element, Field};
 
 /// What the arguments of an emitted function are; joint i has index i - 1.
@@ -55,10 +57,8 @@ pub enum Symbol {
     Position(u16),
     /// dq_i.
     Rate(u16),
-    /// sign(dq_i), with sign(0) = 0.
-    RateSign(u16),
-    /// exp(-|dq_i| / v_i), v_i the Stribeck velocity of the joint: an input here, tied to dq_i by nothing but its derivative.
-    Stribeck(u16),
+    /// A function of dq_i: an input here, tied to dq_i by nothing but its derivative.
+    OfRate(Elementary, u16),
     /// |g_i(q)|: an input here, tied to q by nothing but its derivative; the pool keeps g_i ([`Pool::set_gravity`]).
     GravitySize(u16),
     /// sign(g_i(q)), with sign(0) = 0: likewise, of derivative 0.
@@ -159,8 +159,7 @@ impl Symbol {
             | Symbol::Cosine(i)
             | Symbol::Position(i)
             | Symbol::Rate(i)
-            | Symbol::RateSign(i)
-            | Symbol::Stribeck(i)
+            | Symbol::OfRate(_, i)
             | Symbol::GravitySize(i)
             | Symbol::GravitySign(i)
             | Symbol::Acceleration(i)
@@ -423,13 +422,12 @@ impl Pool {
             Symbol::CosineOf(sum) => self.field.circle_of(sum, |i| self.field.circle(value(1, i))).1,
             Symbol::Position(i) => value(2, i),
             Symbol::Rate(i) => value(3, i),
-            Symbol::RateSign(i) => value(4, i),
+            Symbol::OfRate(of, i) => value(of.kind(), i),
             Symbol::Acceleration(i) => value(5, i),
             Symbol::ReferenceRate(i) => value(6, i),
             Symbol::ReferenceAcceleration(i) => value(7, i),
             Symbol::Torque(i) => value(8, i),
             Symbol::Parameter(i) => value(9, i),
-            Symbol::Stribeck(i) => value(10, i),
             Symbol::GravitySize(i) => value(11, i),
             Symbol::GravitySign(i) => value(12, i),
             Symbol::Gravity(i) => value(13, i),

@@ -9,6 +9,7 @@ pub mod coupling;
 pub mod derivation;
 pub mod determinant;
 pub mod factors;
+mod friction;
 pub mod model;
 pub mod newton_euler;
 pub mod parameters;

@@ -13,7 +13,7 @@ use std::collections::BTreeMap;
 
 use crate::catalogue::{Absent, Argument, Parameter, Quantity, Sizes};
 use crate::exact::Number;
-use crate::kinds::Scalar;
+use crate::kinds::{Feature, Scalar};
 use crate::ring::Symbol;
 use armgen_description::language::Language;
 
@@ -218,14 +218,8 @@ pub struct Module {
     pub gravity: [Number; 3],
     /// Whether that is an argument of the functions which it enters, and `gravity` its nominal value.
     pub gravity_is_argument: bool,
-    /// Whether springs are part of g and U.
-    pub has_springs: bool,
-    /// Whether friction has an offset or grows with the cube of a rate.
-    pub has_more_friction: bool,
-    /// Whether friction has a part that fades as a joint begins to move.
-    pub has_stribeck: bool,
-    /// Whether friction grows with the load of a joint.
-    pub has_load_friction: bool,
+    /// What its joints have, which documentation names.
+    pub features: Vec<Feature>,
     /// Rows of the task in the geometric Jacobian.
     pub task: Vec<usize>,
     /// The end effectors with names; none where there is one without a name.

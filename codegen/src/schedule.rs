@@ -17,7 +17,7 @@ use crate::parallel::parallel_map;
 pub use crate::pass::{Pass, Passes};
 use crate::program::{Cost, Coupling, EndEffector, Function, Joint, Module, Operand, Operation, Output, Step, Trig};
 use crate::ring::count::DIVISION_COST;
-use crate::ring::{ExprId, Node, Pool, Symbol};
+use crate::ring::{Elementary, ExprId, Node, Pool, Symbol};
 use crate::Model;
 pub use selection::{Selection, UnknownFunctions};
 
@@ -68,10 +68,7 @@ pub fn module(model: &Model, options: &Options) -> Module {
         coupling: manipulator.coupling.as_ref().map(|coupling| coupled(manipulator, coupling)),
         gravity: manipulator.gravity.each_ref().map(|g| nominal(manipulator, g)),
         gravity_is_argument: manipulator.gravity_is_argument,
-        has_springs: manipulator.has_springs(),
-        has_more_friction: manipulator.has_more_friction(),
-        has_stribeck: manipulator.has_stribeck(),
-        has_load_friction: manipulator.has_load_friction(),
+        features: manipulator.features(),
         task: manipulator.task_rows(),
         tips: manipulator.tips.iter().map(|tip| end_effector(manipulator, tip)).collect(),
         parameters: model.parameters.entries.clone(),
@@ -160,10 +157,9 @@ fn lower(model: &Model, quantity: &'static Quantity, with_parameters: bool, deri
     let method = derivation.method;
     let mut function =
         Function { quantity, with_parameters, arguments, steps, outputs, method, stribeck: BTreeMap::new(), fuse: false };
+    let coordinates = model.manipulator.coordinates();
     let velocity = |symbol| match symbol {
-        Symbol::Stribeck(i) => {
-            Some((i, model.manipulator.coordinates()[usize::from(i)].joint.stribeck.as_ref()?.velocity.clone()))
-        }
+        Symbol::OfRate(Elementary::Decay, i) => Some((i, coordinates[usize::from(i)].joint.decay_velocity()?)),
         _ => None,
     };
     function.stribeck = function.symbols().into_iter().filter_map(velocity).collect();

@@ -111,7 +111,7 @@ pub struct Shown {
     pub content: Content,
     /// Names of the symbols [`Symbol::Parameter`](crate::ring::Symbol::Parameter), by index.
     pub parameters: Vec<String>,
-    /// Stribeck velocities of the joints; 1 where there is no such friction.
+    /// Velocities of the joints' friction; 1 where it has no velocity.
     pub velocities: Vec<Number>,
     /// For the determinant, its factors and where each is zero; for minors, the factors that they share.
     pub factors: Option<Vec<Factor>>,

@@ -202,6 +202,26 @@ pub struct FrictionDescription {
     pub stribeck: Option<StribeckDescription>,
 }
 
+impl FrictionDescription {
+    /// Of what is below each key that has one number, and of Stribeck friction.
+    pub(super) fn new(mut of: impl FnMut(&'static str) -> Value, stribeck: Option<StribeckDescription>) -> FrictionDescription {
+        FrictionDescription {
+            viscous: of("viscous"),
+            coulomb: of("coulomb"),
+            offset: of("offset"),
+            cubic: of("cubic"),
+            load: of("load"),
+            stribeck,
+        }
+    }
+
+    /// The keys that have one number, in the order of a file.
+    pub fn numbers(&self) -> [(&'static str, &Value); 5] {
+        let FrictionDescription { viscous, coulomb, offset, cubic, load, stribeck: _ } = self;
+        [("viscous", viscous), ("coulomb", coulomb), ("offset", offset), ("cubic", cubic), ("load", load)]
+    }
+}
+
 /// Stribeck friction at a joint.
 #[derive(Clone, Debug)]
 pub struct StribeckDescription {

@@ -95,3 +95,21 @@ impl TaskRow {
         ["x", "y", "z", "rx", "ry", "rz"][self.index()]
     }
 }
+
+/// What joints may have beyond viscous and Coulomb friction, in the order of documentation.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Feature {
+    /// A spring.
+    Spring,
+    /// Friction with an offset, or that grows with the cube of the rate.
+    OffsetOrCubic,
+    /// Stribeck friction.
+    Stribeck,
+    /// Friction that grows with the load.
+    LoadFriction,
+}
+
+impl Feature {
+    /// Every feature.
+    pub const ALL: [Feature; 4] = [Feature::Spring, Feature::OffsetOrCubic, Feature::Stribeck, Feature::LoadFriction];
+}

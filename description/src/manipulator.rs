@@ -16,7 +16,7 @@
 //! `link_frame = 1`. In rows of the convention urdf joint frames are laid where Denavit and Hartenberg lay theirs (`validate/frames.rs`).
 
 use crate::exact::{Number, Polynomial};
-use crate::kinds::{JointKind, ParameterId, TaskRow};
+use crate::kinds::{Feature, JointKind, ParameterId, TaskRow};
 
 /// Index into [`Manipulator::joints`]; link i is the one that joint i moves.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
@@ -202,6 +202,28 @@ pub struct Joint {
     pub spring: Option<Spring>,
     /// Inertia that the joint alone feels, kg m² or kg: the torque is armature · ddq. `None` where the file does not give it.
     pub armature: Option<Polynomial>,
+}
+
+impl Joint {
+    /// Whether it has a feature.
+    pub fn has(&self, feature: Feature) -> bool {
+        match feature {
+            Feature::Spring => self.spring.is_some(),
+            Feature::OffsetOrCubic => self.offset.is_some() || self.cubic.is_some(),
+            Feature::Stribeck => self.stribeck.is_some(),
+            Feature::LoadFriction => self.load.as_ref().is_some_and(|load| !load.is_zero()),
+        }
+    }
+
+    /// v of exp(-|dq| / v), which its friction contains.
+    pub fn decay_velocity(&self) -> Option<Number> {
+        self.stribeck.as_ref().map(|stribeck| stribeck.velocity.clone())
+    }
+
+    /// The velocity of its friction as the description has it; 1 where it has no velocity.
+    pub fn friction_velocity(&self) -> Number {
+        self.decay_velocity().unwrap_or_else(Number::one)
+    }
 }
 
 /// Stribeck friction at a joint: the torque is torque · sign(dq) · exp(-|dq| / velocity), beyond Coulomb friction.
@@ -390,30 +412,31 @@ impl Manipulator {
         path
     }
 
-    /// Whether joints have springs.
-    pub fn has_springs(&self) -> bool {
-        self.joints.iter().any(|joint| joint.spring.is_some())
+    /// What its joints have, for the documentation of functions.
+    pub fn features(&self) -> Vec<Feature> {
+        let all = Feature::ALL.into_iter();
+        all.filter(|feature| self.joints.iter().any(|joint| joint.has(*feature))).collect()
     }
 
-    /// Whether joints have friction that is neither viscous nor Coulomb's.
-    pub fn has_more_friction(&self) -> bool {
-        self.joints.iter().any(|joint| joint.offset.is_some() || joint.cubic.is_some())
-    }
-
-    /// The Stribeck velocities of the joints; 1 where there is no such friction.
-    pub fn stribeck_velocities(&self) -> Vec<Number> {
-        let velocity = |joint: &Joint| joint.stribeck.as_ref().map_or_else(Number::one, |stribeck| stribeck.velocity.clone());
-        self.joints.iter().map(velocity).collect()
-    }
-
-    /// Whether joints have Stribeck friction.
-    pub fn has_stribeck(&self) -> bool {
-        self.joints.iter().any(|joint| joint.stribeck.is_some())
+    /// The velocities of the joints' friction; 1 where it has no velocity.
+    pub fn friction_velocities(&self) -> Vec<Number> {
+        self.joints.iter().map(Joint::friction_velocity).collect()
     }
 
     /// Whether friction of joints grows with their load.
     pub fn has_load_friction(&self) -> bool {
-        self.joints.iter().any(|joint| joint.load.as_ref().is_some_and(|load| !load.is_zero()))
+        self.joints.iter().any(|joint| joint.has(Feature::LoadFriction))
+    }
+
+    /// The first joint whose friction depends on its rate otherwise than by the sign and linearly, by its index: the code of a refusal and
+    /// the name of that friction.
+    pub fn curved_friction(&self) -> Option<(usize, &'static str, &'static str)> {
+        let is_given = |p: &Polynomial| !p.evaluate(&|ParameterId(i)| self.parameters[i as usize].nominal.clone()).is_zero();
+        self.joints.iter().enumerate().find_map(|(i, joint)| {
+            let stribeck = joint.stribeck.as_ref().map(|stribeck| &stribeck.torque);
+            let curved = joint.cubic.iter().chain(stribeck).any(is_given);
+            curved.then_some((i, "friction-not-treated", "cubic or Stribeck"))
+        })
     }
 
     /// The joint that carries each one, by its index.

@@ -12,7 +12,7 @@ use armgen_codegen::catalogue::Argument;
 use armgen_codegen::exact::Number;
 use armgen_codegen::program::listing::{angles, Name};
 use armgen_codegen::program::{self as steps, Module};
-use armgen_codegen::ring::Symbol;
+use armgen_codegen::ring::{Elementary, Symbol};
 use armgen_codegen::Trig;
 use armgen_numbers as numbers;
 pub use armgen_numbers::postures::{Postures, Redundancy, Solver, Unfit, Verdict};
@@ -77,8 +77,10 @@ pub fn function<T: Scalar>(module: &Module, of: &steps::Function) -> Function<T>
         let (argument, entry) = (place(Argument::of(symbol)), usize::from(symbol.index()));
         known.insert(symbol, inputs.len());
         inputs.push(match symbol {
-            Symbol::RateSign(_) => Input::Sign { argument, entry },
-            Symbol::Stribeck(joint) => Input::Fading { argument, entry, velocity: T::nearest(&of.stribeck[&joint]) },
+            Symbol::OfRate(Elementary::Sign, _) => Input::Sign { argument, entry },
+            Symbol::OfRate(Elementary::Decay, joint) => {
+                Input::Fading { argument, entry, velocity: T::nearest(&of.stribeck[&joint]) }
+            }
             _ => Input::Entry { argument, entry },
         });
     }

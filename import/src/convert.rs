@@ -17,8 +17,8 @@ mod write;
 use std::collections::BTreeSet;
 
 use armgen_codegen::description::{
-    BodyDescription, Convention, FrictionDescription, JointDescription, PoseDescription, PoseElement, PosturesDescription,
-    RegressorDescription, RobotDescription, RotationDescription, SpringDescription, StribeckDescription, Value, INERTIA_ELEMENTS,
+    BodyDescription, Convention, JointDescription, PoseDescription, PoseElement, PosturesDescription, RegressorDescription,
+    RobotDescription, RotationDescription, SpringDescription, StribeckDescription, Value, INERTIA_ELEMENTS,
 };
 use armgen_codegen::diagnostic::{Code, Diagnostic, Diagnostics};
 use armgen_codegen::document::yaml::has_comment;
@@ -387,10 +387,8 @@ impl<'d> Converter<'d> {
         text.push("    link:".into());
         self.link(joint, k, row, text);
         self.motor(joint, k, before, text);
-        let FrictionDescription { viscous, coulomb, offset, cubic, load, stribeck } = &joint.friction;
-        let friction = [("viscous", viscous), ("coulomb", coulomb), ("offset", offset), ("cubic", cubic), ("load", load)];
-        let mut friction = self.given(&friction);
-        friction.extend(stribeck.as_ref().map(|StribeckDescription { torque, velocity, .. }| {
+        let mut friction = self.given(&joint.friction.numbers());
+        friction.extend(joint.friction.stribeck.as_ref().map(|StribeckDescription { torque, velocity, .. }| {
             format!("stribeck: {{{}}}", self.given(&[("torque", torque), ("velocity", velocity)]).join(", "))
         }));
         if !friction.is_empty() {

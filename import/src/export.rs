@@ -21,8 +21,8 @@ mod text;
 use std::collections::BTreeSet;
 
 use armgen_codegen::description::{
-    AttachedDescription, BodyDescription, Convention, JointDescription, MotorDescription, PoseDescription, PosturesDescription,
-    RegressorDescription, RobotDescription, RotationDescription, Value,
+    AttachedDescription, BodyDescription, Convention, FrictionDescription, JointDescription, MotorDescription, PoseDescription,
+    PosturesDescription, RegressorDescription, RobotDescription, RotationDescription, Value,
 };
 use armgen_codegen::diagnostic::Diagnostics;
 use armgen_codegen::document::Expression;
@@ -420,10 +420,13 @@ impl Writer<'_> {
         joints_with("a URDF has no springs; left out at", &|joint| {
             joint.spring.as_ref().is_some_and(|spring| is_some(&spring.stiffness))
         });
-        joints_with("a URDF's friction has no `offset`, `cubic`, `load` and `stribeck`; left out at", &|joint| {
-            let friction = &joint.friction;
-            let stribeck = friction.stribeck.as_ref().is_some_and(|stribeck| is_some(&stribeck.torque));
-            stribeck || [&friction.offset, &friction.cubic, &friction.load].into_iter().any(is_some)
+        let beyond = |(key, _): &(&str, &Value)| !["viscous", "coulomb"].contains(key);
+        let none = FrictionDescription::default();
+        let keys = none.numbers().into_iter().filter(beyond).map(|(key, _)| format!("`{key}`"));
+        let keys = keys.collect::<Vec<String>>().join(", ");
+        joints_with(&format!("a URDF's friction has no {keys} and `stribeck`; left out at"), &|joint| {
+            let stribeck = joint.friction.stribeck.as_ref().is_some_and(|stribeck| is_some(&stribeck.torque));
+            stribeck || joint.friction.numbers().into_iter().filter(beyond).any(|(_, value)| is_some(value))
         });
         joints_with(
             "the file follows URDF 1.2, which programs before 2026 refuse, for limits of acceleration and jerk at",

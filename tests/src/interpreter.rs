@@ -1,7 +1,7 @@
 //! Programs interpreted: the steps that would be printed as Rust, carried out in f64, so that a robot can be judged without a compiler.
 
 use armgen_codegen::program::{Function, Module, Operand, Operation};
-use armgen_codegen::ring::{AngleSum, Symbol};
+use armgen_codegen::ring::{AngleSum, Elementary, Symbol};
 use armgen_codegen::schedule::Options;
 use armgen_codegen::source::Source;
 use armgen_codegen::validate;
@@ -113,11 +113,11 @@ fn operand(function: &Function, turn: f64, values: &[f64], arguments: &Arguments
         Symbol::CosineOf(sum) => sum_of(sum, turn, &|i| given(Argument::Q, &a.q, i)).cos(),
         Symbol::Position(i) => given(Argument::Q, &a.q, i),
         Symbol::Rate(i) => given(Argument::Dq, &a.dq, i),
-        Symbol::RateSign(i) => match given(Argument::Dq, &a.dq, i) {
+        Symbol::OfRate(Elementary::Sign, i) => match given(Argument::Dq, &a.dq, i) {
             0.0 => 0.0,
             rate => rate.signum(),
         },
-        Symbol::Stribeck(i) => (-given(Argument::Dq, &a.dq, i).abs() / function.stribeck[&i].to_f64()).exp(),
+        Symbol::OfRate(Elementary::Decay, i) => (-given(Argument::Dq, &a.dq, i).abs() / function.stribeck[&i].to_f64()).exp(),
         Symbol::GravitySize(_) | Symbol::GravitySign(_) => panic!("a step of a program, and no input"),
         Symbol::Acceleration(i) => given(Argument::Ddq, &a.ddq, i),
         Symbol::ReferenceRate(i) => given(Argument::Dqr, &a.dqr, i),

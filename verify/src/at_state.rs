@@ -73,7 +73,7 @@ fn state(arguments: &Arguments<f64>, manipulator: &Manipulator) -> State<f64> {
     let sign = |rate: &f64| if *rate == 0.0 { 0.0 } else { rate.signum() };
     let angles = arguments.q.iter().map(|q| q.sin_cos()).collect();
     let fading = |(rate, of): (&f64, Coordinate<'_>)| {
-        of.joint.stribeck.as_ref().map_or(0.0, |stribeck| libm::exp(-rate.abs() / stribeck.velocity.to_f64()))
+        of.joint.decay_velocity().map_or(0.0, |velocity| libm::exp(-rate.abs() / velocity.to_f64()))
     };
     let stribeck = arguments.dq.iter().zip(manipulator.coordinates()).map(fading).collect();
     State { stribeck, ..State::of(arguments.clone(), angles, arguments.dq.iter().map(sign).collect(), [0.0, 1.0]) }

@@ -109,8 +109,8 @@ fn sample<E: Element>(arm: &Arm<E>, state: State<E>, named: &[(Standard, bool)])
                 column[i] = square.times(&at_joints.dq[i]);
             }
             Standard::Viscous(i) => column[i].clone_from(&at_joints.dq[i]),
-            Standard::Coulomb(i) => column[i].clone_from(&at_joints.signs[i]),
-            Standard::Stribeck(i) => column[i] = at_joints.signs[i].times(&at_joints.stribeck[i]),
+            Standard::Coulomb(i) => column[i].clone_from(&at_joints.directions[i]),
+            Standard::Stribeck(i) => column[i] = at_joints.directions[i].times(&at_joints.stribeck[i]),
             Standard::Offset(i) => column[i].clone_from(&arm.one),
             Standard::Cubic(i) => column[i] = at_joints.dq[i].times(&at_joints.dq[i]).times(&at_joints.dq[i]),
             Standard::Stiffness(i) => column[i] = at_joints.q[i].minus(&arm.joints[i].rest),
@@ -187,9 +187,8 @@ impl<E: Element> Samples<E> {
         let under = |state: State<E>| sample(&arm.clone().under(&state.g0), state, named);
         let mut samples = vec![under(reference.state.clone())];
         for _ in 0..more {
-            let fades = manipulator.coordinates().into_iter().map(|of| of.joint.stribeck.is_some());
-            let state = State::draw(arithmetic, arm.dof()).with_stribeck(arithmetic, fades);
-            samples.push(under(state.with_gravity(arithmetic, manipulator.gravity_is_argument)));
+            let state = State::draw(arithmetic, arm.dof()).with_decays(arithmetic, arm.decays());
+            samples.push(under(arm.with_friction(state).with_gravity(arithmetic, manipulator.gravity_is_argument)));
         }
         Some(Samples(samples))
     }
@@ -377,8 +376,8 @@ pub fn dependent_column<K: Arithmetic>(
         if echelon.0.len() == columns {
             return None;
         }
-        let fades = (0..n).map(|i| program.steps.iter().any(|step| matches!(step, Step::Stribeck(joint, _) if *joint == i)));
-        let state = State::draw(&mut arithmetic, n).with_stribeck(&mut arithmetic, fades);
+        let decays = (0..n).map(|i| program.steps.iter().any(|step| matches!(step, Step::Stribeck(joint, _) if *joint == i)));
+        let state = State::draw(&mut arithmetic, n).with_decays(&mut arithmetic, decays);
         let state = state.with_gravity(&mut arithmetic, program.arguments.contains(&Argument::Gravity));
         let Some(entries) = program.run(&state, literals).into_iter().collect::<Option<Vec<_>>>() else { continue };
         entries.chunks(columns).for_each(|row| echelon.add(row.to_vec(), columns));

@@ -22,7 +22,7 @@ use armgen_description::parallel::parallel_map;
 
 use crate::arithmetic::wide::Wide;
 use crate::claims::Claims;
-use crate::divisors::{divisors, undivided_operands};
+use crate::divisors::undivided_operands;
 use crate::enclosure::Float;
 use crate::equations::arm::formula;
 use crate::float::{Arguments, Lanes, LANES};
@@ -168,7 +168,7 @@ const STATES_FOR_DIVISORS: usize = 4096;
 
 /// Half of the smallest divisor among random states of the box.
 fn smallest_divisor(program: &Program, domain: &Domain, real: Float) -> Option<f64> {
-    let divisors = divisors(program);
+    let divisors = program.divisors();
     if divisors.is_empty() {
         return None;
     }

@@ -15,7 +15,7 @@ use crate::base::{dependent_column, OwnParameters, Samples, FITTED};
 use crate::check::{parallel_map, Check};
 use crate::claims::{Claims, Resolved};
 use crate::contract::{Promise, Sizes};
-use crate::divisors::{divisors, is_needed, needed};
+use crate::divisors::{is_needed, needed};
 use crate::element::Element;
 use crate::enclosure::Float;
 use crate::equations::arm::{formula, Arm};
@@ -208,13 +208,13 @@ fn fitting<'a>(
 fn other_velocity(program: &Program, manipulator: &Manipulator, real: Float) -> Option<String> {
     program.steps.iter().find_map(|step| {
         let Step::Stribeck(joint, literal) = step else { return None };
-        let Some(stribeck) = manipulator.coordinates().get(*joint).and_then(|of| of.joint.stribeck.as_ref()) else {
+        let Some(velocity) = manipulator.coordinates().get(*joint).and_then(|of| of.joint.decay_velocity()) else {
             return Some(format!("joint {} has no Stribeck friction", joint + 1));
         };
         let written = &program.literals[*literal];
-        let other = !real.is_nearest(written.value, &formula(&stribeck.velocity));
+        let other = !real.is_nearest(written.value, &formula(&velocity));
         other.then(|| {
-            let given = stribeck.velocity.to_f64();
+            let given = velocity.to_f64();
             format!("the Stribeck friction of joint {} fades at {}, in the description at {given}", joint + 1, written.text)
         })
     })
@@ -298,7 +298,7 @@ impl Checker {
         module: &Module,
         base: Option<OwnParameters>,
     ) -> Result<Checker, String> {
-        let divides = module.programs().any(|(_, program)| !divisors(program).is_empty());
+        let divides = module.programs().any(|(_, program)| !program.divisors().is_empty());
         let constants = Constants::of(&manipulator, &claims)?;
         let Constants { atoms, dependent } = &constants;
         let mut log2_odds = Odds::of_functions(&manipulator, &vector, &claims, &constants, module, base.as_ref());
@@ -549,7 +549,7 @@ impl Checker {
 
     /// A divisor that the equations do not ask for.
     fn foreign_divisor(&self, program: &Program, chosen: &[Formula]) -> Option<Verdict> {
-        let divisors = divisors(program);
+        let divisors = program.divisors();
         let by = program.part(&divisors);
         if !Check::Divisors.is_made()
             || divisors.is_empty()

@@ -207,7 +207,7 @@ impl Table {
         };
         let rows = program.steps.iter().map(&mut row).collect::<Result<Vec<Row>, String>>()?;
         let entries = program.outputs.iter().map(|output| output.step as u32).collect();
-        let divides = program.steps.iter().any(|step| matches!(step, Step::Divide(..)));
+        let divides = !program.divisors().is_empty();
         let sensitive = divides || program.steps.len() > LONG && program.outputs.len() <= MANY;
         Ok(Table { rows, angles, entries, sensitive, real })
     }

@@ -18,7 +18,7 @@ use std::collections::BTreeSet;
 
 use crate::contract::{tip_of, Promise};
 use crate::element::Element;
-use crate::program::{Program, Step};
+use crate::program::Program;
 
 /// Matrices whose pivots are permitted divisors.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -99,18 +99,6 @@ fn eliminated<E: Element>(rows: &[Vec<E>]) -> Vec<E> {
     pivots
 }
 
-/// The divisors of a function, as steps.
-pub fn divisors(program: &Program) -> Vec<usize> {
-    let divisor = |step: &Step| match step {
-        Step::Divide(_, divisor) => Some(*divisor),
-        _ => None,
-    };
-    let mut divisors: Vec<usize> = program.steps.iter().filter_map(divisor).collect();
-    divisors.sort_unstable();
-    divisors.dedup();
-    divisors
-}
-
 /// Whether a divisor with these values at two states equals a pivot at both states, or the negative of one at both.
 pub fn is_needed<E: Element>(function: &str, values: [&E; 2], pivots: [&Pivots<E>; 2]) -> bool {
     let [here, there] = pivots.map(|pivots| pivots.of_function(function));
@@ -125,7 +113,7 @@ pub fn undivided_operands(program: &Program) -> Vec<usize> {
     let mut operands = BTreeSet::new();
     for step in &program.steps {
         let of = || step.operands().into_iter().flatten();
-        let takes_part = matches!(step, Step::Divide(..)) || of().any(|operand| divided[operand]);
+        let takes_part = program.divisor(step).is_some() || of().any(|operand| divided[operand]);
         if takes_part {
             operands.extend(of().filter(|&operand| !divided[operand]));
         }

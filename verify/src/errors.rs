@@ -18,7 +18,7 @@ use crate::companion::{LaneArguments, LaneTable, Table};
 use crate::element::Element;
 use crate::enclosure::Float;
 use crate::float::{Arguments, LANES};
-use crate::program::{Program, Step};
+use crate::program::Program;
 use crate::ranges::{literal_errors, Domain};
 use crate::reader::{Function, Module};
 use crate::residual::{Equations, Residual};
@@ -116,11 +116,7 @@ impl Subject {
             let exact = exact.ok_or(format!("`{name}`: a literal out of reach"))?;
             let table = Table::of(&program, &errors, module.real)?.lanes();
             let bound = of_function(&program, &values, &domain, module, claims);
-            let divisor = |step: &Step| match step {
-                Step::Divide(_, divisor) => Some(*divisor),
-                _ => None,
-            };
-            let divisors = program.steps.iter().filter_map(divisor).collect();
+            let divisors = program.divisors();
             let mut entries: Vec<(usize, f64)> =
                 program.outputs.iter().map(|o| o.step).zip(bound.entries.iter().copied()).collect();
             entries.sort_by_key(|entry| entry.0);

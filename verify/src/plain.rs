@@ -54,10 +54,10 @@ impl Plain<'_> {
         base::values(numbers, self.manipulator, self.vector, named, state, wanted).ok()
     }
 
-    /// The velocities at which Stribeck friction fades, of joints that have it.
-    fn stribeck_velocities(&self) -> impl Iterator<Item = Option<f64>> + '_ {
+    /// The velocities of the exponentials of friction, of joints that have them.
+    fn decay_velocities(&self) -> impl Iterator<Item = Option<f64>> + '_ {
         let velocity =
-            |of: Coordinate<'_>| of.joint.stribeck.as_ref().and_then(|stribeck| Float::F64.nearest(&formula(&stribeck.velocity)));
+            |of: Coordinate<'_>| of.joint.decay_velocity().and_then(|velocity| Float::F64.nearest(&formula(&velocity)));
         self.manipulator.coordinates().into_iter().map(velocity)
     }
 
@@ -77,7 +77,7 @@ impl Plain<'_> {
         };
         let sign = |rate: &Running| Running::exact(rate.value.map(|x| if x == 0.0 { 0.0 } else { x.signum() }));
         let (angles, signs) = (arguments.q.iter().map(circle).collect(), arguments.dq.iter().map(sign).collect());
-        let stribeck = arguments.dq.iter().zip(self.stribeck_velocities()).map(|(rate, velocity)| {
+        let stribeck = arguments.dq.iter().zip(self.decay_velocities()).map(|(rate, velocity)| {
             let both = rate.value.map(|rate| match velocity {
                 Some(velocity) => {
                     let value = stribeck(rate, velocity);
@@ -109,7 +109,7 @@ impl Plain<'_> {
         let circle = |q: &Range| Range { low: -1.0, high: 1.0, error: 2.0 * unit + q.error };
         let angles = arguments.q.iter().map(|q| (circle(q), circle(q))).collect();
         let signs = vec![Range { low: -1.0, high: 1.0, error: 0.0 }; arguments.q.len()];
-        let stribeck = arguments.dq.iter().zip(self.stribeck_velocities());
+        let stribeck = arguments.dq.iter().zip(self.decay_velocities());
         let stribeck = stribeck.map(|(rate, velocity)| {
             velocity.map_or(range((0.0, 0.0)), |velocity| Range::stribeck((rate.low, rate.high), velocity, Float::F64))
         });

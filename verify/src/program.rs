@@ -276,6 +276,22 @@ impl Program {
         values.iter().cloned().chain(circles).collect()
     }
 
+    /// The divisor of a step that divides by what may come close to 0.
+    pub fn divisor(&self, step: &Step) -> Option<usize> {
+        match step {
+            Step::Divide(_, divisor) => Some(*divisor),
+            _ => None,
+        }
+    }
+
+    /// All such divisors, as steps.
+    pub fn divisors(&self) -> Vec<usize> {
+        let mut divisors: Vec<usize> = self.steps.iter().filter_map(|step| self.divisor(step)).collect();
+        divisors.sort_unstable();
+        divisors.dedup();
+        divisors
+    }
+
     /// The factors of a product without rounding.
     pub fn factors(&self, step: usize) -> Option<(usize, usize)> {
         match self.steps[step] {

@@ -143,7 +143,7 @@ struct Evaluation<'a> {
     /// Errors of its literals.
     errors: &'a [f64],
     domain: &'a Domain,
-    /// Lower bound of all divisors.
+    /// Lower bound of all divisors that may come close to 0.
     smallest: Option<f64>,
     real: Float,
 }
@@ -218,7 +218,10 @@ impl Evaluation<'_> {
                 let (ends, carried) = products((*x, of(x)), (*y, of(y)));
                 Range::of(&ends, carried)
             }
-            Step::Divide(x, y) => self.quotient(of(x), of(y)),
+            Step::Divide(x, y) => {
+                let least = self.program.divisor(step).and(self.smallest);
+                self.quotient(of(x), of(y), least.unwrap_or(0.0))
+            }
         }
     }
 
@@ -238,8 +241,8 @@ impl Evaluation<'_> {
         }
     }
 
-    fn quotient(&self, a: Range, mut b: Range) -> Range {
-        let least = self.smallest.unwrap_or(0.0);
+    /// The quotient by a divisor of at least this size.
+    fn quotient(&self, a: Range, mut b: Range, least: f64) -> Range {
         // All divisors are positive or all negative, because pivots of B keep their sign.
         if b.high >= -b.low {
             b.low = b.low.max(least);

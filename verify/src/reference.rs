@@ -363,8 +363,8 @@ impl<E: Element> Reference<E> {
         vector: &Vector,
         wanted: Wanted,
     ) -> Result<Reference<E>, String> {
-        let fades = manipulator.coordinates().into_iter().map(|of| of.joint.stribeck.is_some());
-        let state = State::draw(arithmetic, manipulator.dof()).with_stribeck(arithmetic, fades);
+        let decays = manipulator.coordinates().into_iter().map(|of| of.joint.decay_velocity().is_some());
+        let state = State::draw(arithmetic, manipulator.dof()).with_decays(arithmetic, decays);
         let state = state.with_gravity(arithmetic, manipulator.gravity_is_argument);
         Reference::at(arithmetic, manipulator, vector, state, wanted)
     }
@@ -380,7 +380,7 @@ impl<E: Element> Reference<E> {
         let nominal_values = Arm::nominal(arithmetic, manipulator).ok_or_else(divided)?;
         let arm = Arm::new(arithmetic, manipulator, &nominal_values).ok_or_else(divided)?.under(&state.g0);
         let n = arm.dof();
-        state.stribeck_velocities = (0..n).map(|a| arm.joints[arm.joint_of(a)].stribeck_velocity.clone()).collect();
+        state = arm.with_friction(state);
         let mut values = Values::new();
         kinematics(&arm, &state, &mut values);
         if manipulator.is_massless() {

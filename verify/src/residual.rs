@@ -385,7 +385,7 @@ pub fn residual(
     let mut divided: Vec<bool> = Vec::new();
     for step in &program.steps {
         divided.push(match step {
-            Step::Divide(..) => true,
+            _ if program.divisor(step).is_some() => true,
             Step::Negate(a) | Step::SignOf(a) => divided[*a],
             Step::Multiply(a, b) | Step::Product(a, b) if constant(*a, *b) || constant(*b, *a) => true,
             Step::Add(a, b) | Step::Subtract(a, b) | Step::Multiply(a, b) | Step::Product(a, b) => divided[*a] || divided[*b],

@@ -72,8 +72,8 @@ fn wide_state(arguments: &Arguments<f64>, manipulator: &Manipulator) -> Option<S
     let joints = 0..arguments.q.len();
     let angles = joints.clone().map(|i| inputs.sine_cosine(&[(i, 1)])).collect();
     let signs = joints.map(|i| Inputs::<Wide>::sign(&inputs, i)).collect();
-    let fading = |(i, joint): (usize, &Joint)| match &joint.stribeck {
-        Some(stribeck) => Some(inputs.stribeck(i, &Wide::from_formula(&formula(&stribeck.velocity))?)),
+    let fading = |(i, joint): (usize, &Joint)| match joint.decay_velocity() {
+        Some(velocity) => Some(inputs.stribeck(i, &Wide::from_formula(&formula(&velocity))?)),
         None => Some(Wide::from_f64(0.0)),
     };
     let stribeck = manipulator.joints.iter().enumerate().map(fading).collect::<Option<_>>()?;

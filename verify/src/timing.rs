@@ -353,8 +353,8 @@ impl Checker {
         }
         let parameters = Arm::nominal(&Constants, manipulator).ok_or("a parameter has no value")?;
         let arm = Arm::new(&Constants, manipulator, &parameters).ok_or("the arm has no numbers")?;
-        if let Some(i) = arm.joints.iter().position(|joint| !joint.cubic.is_zero() || !joint.stribeck.is_zero()) {
-            return Err(format!("joint `{}` has cubic or Stribeck friction, which is not treated", file.joints[i]));
+        if let Some((i, _, friction)) = manipulator.curved_friction() {
+            return Err(format!("joint `{}` has {friction} friction, which is not treated", file.joints[i]));
         }
         let range = |joint: &armgen_description::manipulator::Joint| {
             joint.limits.position.as_ref().map(|range| range.clone().map(|x| x.to_f64()))

@@ -3,7 +3,7 @@
 use std::collections::HashMap;
 use std::sync::Arc;
 
-use super::{AngleSum, ExprId, Node, Pool, Symbol};
+use super::{AngleSum, Elementary, ExprId, Node, Pool, Symbol};
 use crate::exact::Number;
 
 /// A constant with more terms and factors stays the expression that it arises from.
@@ -108,13 +108,13 @@ impl Pool {
             let kind = match symbol {
                 Symbol::Sine(_) | Symbol::Cosine(_) | Symbol::SineOf(_) | Symbol::CosineOf(_) => 1,
                 Symbol::Position(_) => 2,
-                Symbol::Rate(_) | Symbol::RateSign(_) => 3,
+                Symbol::Rate(_) | Symbol::OfRate(Elementary::Sign, _) => 3,
+                Symbol::OfRate(of, _) => of.kind(),
                 Symbol::Acceleration(_) => 5,
                 Symbol::ReferenceRate(_) => 6,
                 Symbol::ReferenceAcceleration(_) => 7,
                 Symbol::Torque(_) => 8,
                 Symbol::Parameter(_) => 9,
-                Symbol::Stribeck(_) => 10,
                 Symbol::GravitySize(_) => 11,
                 Symbol::GravitySign(_) => 12,
                 Symbol::Gravity(_) => 13,
@@ -176,7 +176,7 @@ fn rational_value(symbol: Symbol, number: u64) -> Number {
         Symbol::CosineOf(sum) => circle_of(sum).1,
         Symbol::Position(i) => small(2, i),
         Symbol::Rate(i) => small(3, i),
-        Symbol::RateSign(i) => {
+        Symbol::OfRate(Elementary::Sign, i) => {
             crate::exact::Rational::from(if draw(3, i) % 41 < 20 { -1 } else { i64::from(draw(3, i) % 41 != 20) })
         }
         Symbol::Acceleration(i) => small(5, i),
@@ -184,7 +184,7 @@ fn rational_value(symbol: Symbol, number: u64) -> Number {
         Symbol::ReferenceAcceleration(i) => small(7, i),
         Symbol::Torque(i) => small(8, i),
         Symbol::Parameter(i) => small(9, i),
-        Symbol::Stribeck(i) => small(10, i),
+        Symbol::OfRate(of, i) => small(of.kind(), i),
         Symbol::GravitySize(i) => small(11, i),
         Symbol::GravitySign(i) => small(12, i),
         Symbol::Gravity(i) => small(13, i),

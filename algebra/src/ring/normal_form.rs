@@ -16,7 +16,7 @@ use std::collections::BTreeMap;
 use std::rc::Rc;
 
 use super::turn::Turn;
-use super::{AngleSum, ExprId, Node, Pool, Symbol};
+use super::{AngleSum, Elementary, ExprId, Node, Pool, Symbol};
 use crate::exact::{Number, Rational};
 
 /// cos or sin of an integer combination of joint angles; the first coefficient that is not 0 is positive.
@@ -206,7 +206,7 @@ fn merge(a: &Powers, b: &Powers) -> Powers {
     }
     // sign(dq)² is not 1 at rest, but sign(dq)³ is sign(dq).
     for (symbol, power) in &mut powers {
-        if matches!(symbol, Symbol::RateSign(_)) && *power > 2 {
+        if matches!(symbol, Symbol::OfRate(Elementary::Sign, _)) && *power > 2 {
             *power = 2 - *power % 2;
         }
     }

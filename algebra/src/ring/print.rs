@@ -27,7 +27,7 @@ pub struct Printer<'a> {
     pub notation: Notation,
     /// Names of parameters, by index.
     pub parameters: &'a [String],
-    /// Stribeck velocities of the joints; 1 where there is no such friction.
+    /// Velocities of the joints' friction, of its elementary functions; 1 where it has no velocity.
     pub velocities: &'a [Number],
     /// Constants as decimals of so many digits, 1 to 17; none: exactly.
     pub digits: Option<u8>,
@@ -61,16 +61,9 @@ impl Printer<'_> {
                 let angle = terms.collect::<String>() + turn;
                 return if text { format!("{name}({angle})") } else { format!("\\{name}({angle})") };
             }
-            Symbol::RateSign(i) => {
-                return if text { format!("sign(dq{})", i + 1) } else { format!("\\operatorname{{sign}} \\dot q_{{{}}}", i + 1) };
-            }
-            Symbol::Stribeck(i) => {
-                let (k, velocity) = (i + 1, self.number(&self.velocities[usize::from(i)]));
-                return if text {
-                    format!("exp(-abs(dq{k})/({velocity}))")
-                } else {
-                    format!("e^{{-|\\dot q_{{{k}}}|/({velocity})}}")
-                };
+            Symbol::OfRate(of, i) => {
+                let [plain, latex] = of.printed(usize::from(i) + 1, &|| self.number(&self.velocities[usize::from(i)]));
+                return if text { plain } else { latex };
             }
             Symbol::GravitySize(i) => {
                 return if text { format!("abs(g{})", i + 1) } else { format!("|g_{{{}}}|", i + 1) };

@@ -119,8 +119,8 @@ fn refused(source: &Source, diagnostics: &Diagnostics) -> u8 {
 fn unfit(description: &str, manipulator: &Manipulator, unfit: &Unfit) -> u8 {
     terminal::error(&match unfit {
         Unfit::Massless => format!("{description}: massless: nothing of this arm has mass, so it has no equations of motion"),
-        Unfit::Friction(joint) => format!(
-            "{description}: friction-not-treated: joint `{}` has cubic or Stribeck friction, which a timing does not treat; \
+        Unfit::Friction { joint, code, friction } => format!(
+            "{description}: {code}: joint `{}` has {friction} friction, which a timing does not treat; \
              describe it by `viscous` and `coulomb` of at least that torque",
             manipulator.joints[*joint].name
         ),

@@ -87,8 +87,8 @@ pub struct Joint {
     pub load: ExprId,
     /// Stribeck friction at the lowest rates.
     pub stribeck: ExprId,
-    /// The rate at which Stribeck friction has fallen to 1/e; 1 without such friction.
-    pub stribeck_velocity: ExprId,
+    /// The velocity of the elementary functions of its friction; 1 without any.
+    pub friction_velocity: ExprId,
     /// Stiffness of its spring.
     pub stiffness: ExprId,
     /// The joint variable at which its spring is at rest.
@@ -519,7 +519,7 @@ fn joint(pool: &mut Pool, manipulator: &Manipulator, view: View<'_>, i: usize) -
     let cubic = given(pool, StandardParameter::Cubic(index));
     let load = joint.load.as_ref().map_or(ExprId::ZERO, |load| pool.constant(load));
     let stribeck = given(pool, StandardParameter::Stribeck(index));
-    let stribeck_velocity = joint.stribeck.as_ref().map_or(ExprId::ONE, |stribeck| pool.constant(&stribeck.velocity));
+    let friction_velocity = pool.constant(&joint.friction_velocity());
     let stiffness = given(pool, StandardParameter::Stiffness(index));
     let rest = joint.spring.as_ref().map_or(ExprId::ZERO, |spring| view.polynomial(pool, manipulator, &spring.rest));
     if let Some(motor) = &joint.motor {
@@ -551,7 +551,7 @@ fn joint(pool: &mut Pool, manipulator: &Manipulator, view: View<'_>, i: usize) -
         cubic,
         load,
         stribeck,
-        stribeck_velocity,
+        friction_velocity,
         stiffness,
         rest,
     }

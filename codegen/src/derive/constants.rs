@@ -2,7 +2,7 @@
 
 use super::passes;
 use crate::exact::Number;
-use crate::manipulator::Manipulator;
+use crate::manipulator::{Joint, Manipulator};
 use crate::ring::field::Field;
 
 /// A field with the roots of a valid arm's constants, and with the sine and cosine of the angle that may turn its last link.
@@ -52,7 +52,7 @@ fn constants(manipulator: &Manipulator) -> Vec<Number> {
                 .flat_map(|p| p.terms().map(|(_, c)| c.clone())),
         );
     }
-    numbers.extend(manipulator.joints.iter().filter_map(|joint| Some(joint.stribeck.as_ref()?.velocity.clone())));
+    numbers.extend(manipulator.joints.iter().filter_map(Joint::decay_velocity));
     numbers.extend(manipulator.joints.iter().filter_map(|joint| joint.load.clone()));
     for variable in manipulator.coupling.iter().flat_map(|coupling| &coupling.variables) {
         numbers.extend(

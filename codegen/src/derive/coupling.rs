@@ -14,7 +14,7 @@ use std::cmp::Ordering;
 use std::sync::Arc;
 
 use crate::manipulator::{Coupling, JointVariable};
-use crate::ring::{AngleSum, ExprId, Pool, Symbol};
+use crate::ring::{AngleSum, Elementary, ExprId, Pool, Symbol};
 
 /// The coupling of an arm, with the factors in its pool.
 #[derive(Clone, Debug)]
@@ -103,12 +103,14 @@ impl Coupled {
             Symbol::Cosine(i) => self.circle(pool, AngleSum::of(i)).1,
             Symbol::SineOf(sum) => self.circle(pool, sum).0,
             Symbol::CosineOf(sum) => self.circle(pool, sum).1,
-            Symbol::RateSign(i) => match self.variable(i).factors.as_slice() {
+            Symbol::OfRate(Elementary::Sign, i) => match self.variable(i).factors.as_slice() {
                 [] => ExprId::ZERO,
                 // Validation refuses a sign of several rates.
-                [(a, factor), ..] => pool.symbol(Symbol::RateSign(*a as u16)).signed(factor.sign() == Ordering::Less),
+                [(a, factor), ..] => {
+                    pool.symbol(Symbol::OfRate(Elementary::Sign, *a as u16)).signed(factor.sign() == Ordering::Less)
+                }
             },
-            Symbol::Stribeck(i) => pool.symbol(Symbol::Stribeck(self.own(i))),
+            Symbol::OfRate(of, i) => pool.symbol(Symbol::OfRate(of, self.own(i))),
             Symbol::GravitySize(i) => pool.symbol(Symbol::GravitySize(self.own(i))),
             Symbol::GravitySign(i) => pool.symbol(Symbol::GravitySign(self.own(i))),
             Symbol::Torque(_) | Symbol::Parameter(_) | Symbol::Gravity(_) => pool.symbol(symbol),

@@ -1,4 +1,4 @@
-//! Inverse dynamics by Newton and Euler's equations in joint frames, and friction.
+//! Inverse dynamics by Newton and Euler's equations in joint frames.
 //!
 //! The acceleration field of link i is a + U r, with U = `[domega] + [omega]²` (`[a]`: the matrix of the cross product with a); force
 //! and moment follow from m, h and the second moments S alone:
@@ -14,6 +14,7 @@
 //! parent, and feels I_m k (k ddq + z_m · domega_p) itself.
 
 use super::arm::Arm;
+use super::friction::friction;
 use super::wrench::{axis_component, wrench_to_parent};
 use crate::derive::arm::symmetric;
 use crate::ring::matrix::{Matrix, Vector, ZERO};
@@ -206,51 +207,6 @@ pub fn wrenches(pool: &mut Pool, arm: &Arm, motion: &Motion, motions: &[LinkMoti
         }
     }
     (tau, wrench)
-}
-
-/// F: viscous friction on `rates`, Coulomb friction on the sign of dq (the book, eq. 7.42), an offset, Stribeck friction sign(dq) F_s
-/// exp(-|dq| / v_s), and F_3 dq² times `rates`: F_3 dq³ where these are dq, and linear in reference rates where they are not.
-pub fn friction(pool: &mut Pool, arm: &Arm, rates: &[ExprId]) -> Vec<ExprId> {
-    (0..arm.dof())
-        .map(|i| {
-            let joint = &arm.joints[i];
-            let mut coefficient = joint.viscous;
-            if joint.cubic != ExprId::ZERO {
-                let steep = cubic_coefficient(pool, arm, i);
-                coefficient = pool.add(coefficient, steep);
-            }
-            let viscous = pool.mul(coefficient, rates[i]);
-            let sign = pool.symbol(Symbol::RateSign(i as u16));
-            let coulomb = pool.mul(joint.coulomb, sign);
-            let sum = pool.add(viscous, coulomb);
-            let sum = pool.add(sum, joint.offset);
-            if joint.stribeck == ExprId::ZERO {
-                return sum;
-            }
-            let fading = pool.symbol(Symbol::Stribeck(i as u16));
-            let along = pool.mul(sign, fading);
-            let stribeck = pool.mul(joint.stribeck, along);
-            pool.add(sum, stribeck)
-        })
-        .collect()
-}
-
-/// F_3 dq².
-pub fn cubic_coefficient(pool: &mut Pool, arm: &Arm, i: usize) -> ExprId {
-    let rate = pool.symbol(Symbol::Rate(i as u16));
-    let square = pool.mul(rate, rate);
-    pool.mul(arm.joints[i].cubic, square)
-}
-
-/// -F_s sign(dq)² exp(-|dq| / v_s) / v_s: the slope of Stribeck friction, 0 at rest, where it jumps.
-pub fn stribeck_slope(pool: &mut Pool, arm: &Arm, i: usize) -> ExprId {
-    let joint = &arm.joints[i];
-    let (sign, fading) = (pool.symbol(Symbol::RateSign(i as u16)), pool.symbol(Symbol::Stribeck(i as u16)));
-    let inverse = pool.reciprocal(joint.stribeck_velocity);
-    let steepness = pool.mul(joint.stribeck, inverse);
-    let square = pool.mul(sign, sign);
-    let moving = pool.mul(square, fading);
-    -pool.mul(steepness, moving)
 }
 
 /// q - rest of the spring of joint `i`.

@@ -15,6 +15,7 @@ use super::model::{Model, Sizes};
 use super::parameters::View;
 use super::passes::{self, RewriteScope};
 use super::plan::{Plan, Start};
+pub use crate::kinds::Feature;
 use crate::manipulator::Tip;
 use crate::pass::{Pass, Passes};
 use crate::ring::count::{DIVISION_COST, SINE_COSINE_COST};
@@ -170,14 +171,8 @@ pub struct Documentation {
     pub failure: [&'static str; 2],
     /// Whether it depends on the acceleration of free fall directly, and so documents it.
     pub names_gravity: bool,
-    /// The contribution of springs, for arms that have them.
-    pub springs: Option<&'static str>,
-    /// The contribution of friction that is neither viscous nor Coulomb's, for arms that have it.
-    pub more_friction: Option<&'static str>,
-    /// The contribution of Stribeck friction, for arms that have it.
-    pub stribeck: Option<&'static str>,
-    /// The contribution of friction that grows with the load, for arms that have it.
-    pub load: Option<&'static str>,
+    /// What features of joints add, by their number, for arms that have them.
+    pub features: [Option<&'static str>; Feature::ALL.len()],
     /// The part that base parameters omit, for the form with base parameters at run time.
     pub base: Option<&'static str>,
     /// Whether the head of a module names the function if the arm lacks it. False for functions that most arms do not need; their
@@ -238,38 +233,22 @@ impl Documentation {
             result_with: None,
             failure: [Documentation::CANNOT_FAIL; 2],
             names_gravity: false,
-            springs: None,
-            more_friction: None,
-            stribeck: None,
-            load: None,
+            features: [None; Feature::ALL.len()],
             base: None,
             said_missing: true,
         }
     }
 
-    /// The same with what springs add.
-    pub const fn with_springs(self, springs: &'static str) -> Documentation {
-        Documentation { springs: Some(springs), ..self }
-    }
-
-    /// The same with what Stribeck friction adds.
-    pub const fn with_stribeck(self, stribeck: &'static str) -> Documentation {
-        Documentation { stribeck: Some(stribeck), ..self }
+    /// The same with what a feature of joints adds.
+    pub const fn with(self, feature: Feature, text: &'static str) -> Documentation {
+        let mut documentation = self;
+        documentation.features[feature as usize] = Some(text);
+        documentation
     }
 
     /// The same with what base parameters leave out.
     pub const fn with_base(self, base: &'static str) -> Documentation {
         Documentation { base: Some(base), ..self }
-    }
-
-    /// The same with what friction that grows with the load adds.
-    pub const fn with_load(self, load: &'static str) -> Documentation {
-        Documentation { load: Some(load), ..self }
-    }
-
-    /// The same with what more friction adds.
-    pub const fn with_more_friction(self, more_friction: &'static str) -> Documentation {
-        Documentation { more_friction: Some(more_friction), ..self }
     }
 }
 

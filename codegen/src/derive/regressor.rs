@@ -14,6 +14,7 @@
 use std::collections::BTreeMap;
 
 use super::arm::Arm;
+use super::friction;
 use super::newton_euler::{deflection, inverse_dynamics, link_motions, LinkMotion, Motion};
 use super::parameters::{Inertial, ParameterKind, ParameterVector, StandardParameter};
 use super::plan::{self, Place, Plan, Start};
@@ -116,17 +117,13 @@ fn columns_in(
                 y[i][column] = pool.mul(square, motion.reference[i]);
             }
             StandardParameter::Armature(i) => y[usize::from(i)][column] = motion.accelerations[usize::from(i)],
-            StandardParameter::Viscous(i) => y[usize::from(i)][column] = motion.reference[usize::from(i)],
-            StandardParameter::Coulomb(i) => y[usize::from(i)][column] = pool.symbol(Symbol::RateSign(i)),
-            StandardParameter::Stribeck(i) => {
-                let (sign, fading) = (pool.symbol(Symbol::RateSign(i)), pool.symbol(Symbol::Stribeck(i)));
-                y[usize::from(i)][column] = pool.mul(sign, fading);
-            }
-            StandardParameter::Offset(i) => y[usize::from(i)][column] = ExprId::ONE,
-            StandardParameter::Cubic(i) => {
+            StandardParameter::Viscous(i)
+            | StandardParameter::Coulomb(i)
+            | StandardParameter::Stribeck(i)
+            | StandardParameter::Offset(i)
+            | StandardParameter::Cubic(i) => {
                 let i = usize::from(i);
-                let square = pool.mul(motion.rates[i], motion.rates[i]);
-                y[i][column] = pool.mul(square, motion.reference[i]);
+                y[i][column] = friction::column(pool, arm, i, parameter, motion.reference[i]).expect("a term of friction");
             }
             StandardParameter::Stiffness(i) => y[usize::from(i)][column] = deflection(pool, arm, usize::from(i)),
         }

@@ -4,6 +4,7 @@
 use crate::catalogue::Parameter;
 use crate::catalogue::{Argument, Documentation, Length, Quantity};
 use crate::exact::Number;
+use crate::kinds::Feature;
 use crate::program::listing::decimal;
 use crate::program::{Cost, Function, Module, Operand};
 
@@ -82,14 +83,8 @@ pub struct Described<'a> {
     pub gravity: &'a [Number; 3],
     /// Whether that is an argument.
     pub gravity_is_argument: bool,
-    /// Whether joints have springs.
-    pub has_springs: bool,
-    /// Whether joints have friction that is neither viscous nor Coulomb's.
-    pub has_more_friction: bool,
-    /// Whether friction has a part that fades as a joint begins to move.
-    pub has_stribeck: bool,
-    /// Whether friction grows with the load of a joint.
-    pub has_load_friction: bool,
+    /// What the joints of the arm have.
+    pub features: &'a [Feature],
     /// Whether the parameters at run time are base parameters.
     pub grouped: bool,
     /// The joint whose variable it turns by a constant angle, counted from 1.
@@ -107,10 +102,7 @@ pub(super) fn described<'a>(function: &Function, module: &'a Module) -> Describe
         with_parameters: function.with_parameters,
         gravity: &module.gravity,
         gravity_is_argument: module.gravity_is_argument,
-        has_springs: module.has_springs,
-        has_more_friction: module.has_more_friction,
-        has_stribeck: module.has_stribeck,
-        has_load_friction: module.has_load_friction,
+        features: &module.features,
         grouped: module.base_parameters,
         turned_joint: turned_joint(function),
         cost: cost(&Cost::of(function)),
@@ -136,20 +128,8 @@ impl Described<'_> {
 
     /// `allocates`: whether its results take memory of their own in the language; `note`: the last paragraph.
     pub(super) fn blocks(&self, allocates: bool, note: Option<&str>) -> Vec<Block> {
-        let Documentation {
-            title,
-            formula,
-            result,
-            result_with,
-            failure,
-            names_gravity,
-            springs,
-            more_friction,
-            stribeck,
-            load,
-            base,
-            ..
-        } = self.quantity.documentation;
+        let Documentation { title, formula, result, result_with, failure, names_gravity, features, base, .. } =
+            self.quantity.documentation;
         let (result, failure) = match self.with_parameters {
             false => (result, failure[0]),
             true => (result_with.unwrap_or(result), failure[1]),
@@ -159,12 +139,7 @@ impl Described<'_> {
             let [x, y, z] = self.gravity.each_ref().map(Number::to_f64);
             blocks.push(Block::text(format!("The acceleration of free fall is g0 = ({x}, {y}, {z}) m/s² in the base frame.")));
         }
-        let of_joints = springs
-            .filter(|_| self.has_springs)
-            .into_iter()
-            .chain(more_friction.filter(|_| self.has_more_friction))
-            .chain(stribeck.filter(|_| self.has_stribeck))
-            .chain(load.filter(|_| self.has_load_friction));
+        let of_joints = self.features.iter().filter_map(|&feature| features[feature as usize]);
         blocks.extend(of_joints.map(Block::text));
         if self.with_parameters {
             blocks.push(Block::text("The parameters are given at run time; what is not among them is as in the description."));

@@ -7,7 +7,7 @@ use crate::catalogue::{Argument, Parameter, Quantity, ResultPart, Sizes};
 use crate::exact::Number;
 use crate::program::listing::{angles, Angle, Expression, Name};
 use crate::program::{EndEffector, Function, Joint, Module, Operation};
-use crate::ring::Symbol;
+use crate::ring::{Elementary, Symbol};
 
 /// How a language writes the elements of a line.
 pub(super) trait Syntax {
@@ -84,7 +84,7 @@ fn input(symbol: Symbol, syntax: &dyn Syntax) -> String {
     }
     let entry = syntax.entry(Argument::of(symbol), usize::from(symbol.index()));
     match symbol {
-        Symbol::RateSign(_) => syntax.sign(&entry),
+        Symbol::OfRate(Elementary::Sign, _) => syntax.sign(&entry),
         _ => entry,
     }
 }

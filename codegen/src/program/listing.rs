@@ -13,7 +13,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use super::{Function, Operand, Operation, Scalar, Step};
 use crate::catalogue::Argument;
 use crate::exact::Number;
-use crate::ring::{AngleSum, Symbol};
+use crate::ring::{AngleSum, Elementary, Symbol};
 
 /// Steps with one use are inlined into the step that uses them, up to this many operands in a line.
 const OPERANDS_IN_A_LINE: usize = 6;
@@ -113,7 +113,7 @@ impl Argument {
             | Symbol::Position(_)
             | Symbol::GravitySize(_)
             | Symbol::GravitySign(_) => Argument::Q,
-            Symbol::Rate(_) | Symbol::RateSign(_) | Symbol::Stribeck(_) => Argument::Dq,
+            Symbol::Rate(_) | Symbol::OfRate(..) => Argument::Dq,
             Symbol::Acceleration(_) => Argument::Ddq,
             Symbol::ReferenceRate(_) => Argument::Dqr,
             Symbol::ReferenceAcceleration(_) => Argument::Ddqr,
@@ -193,7 +193,7 @@ impl Function {
     /// Whether it takes the sign of a rate or of another value.
     pub fn takes_signs(&self) -> bool {
         self.steps.iter().any(|step| matches!(step.operation, Operation::Sign | Operation::OppositeSign))
-            || self.symbols().iter().any(|symbol| matches!(symbol, Symbol::RateSign(_)))
+            || self.symbols().iter().any(|symbol| matches!(symbol, Symbol::OfRate(Elementary::Sign, _)))
     }
 
     /// The arguments that its lines use directly, in order; an argument that only enters through its sine or cosine is not among them.
@@ -364,7 +364,7 @@ impl Listing {
         let mut made: Vec<Made> = Vec::with_capacity(function.steps.len());
         let operand = |made: &mut [Made], operand: &Operand| match operand {
             Operand::Step(i) => made[*i as usize].take(),
-            Operand::Input(Symbol::Stribeck(i)) => Made { expression: Expression::Step(fading[i]), operands: 1 },
+            Operand::Input(Symbol::OfRate(Elementary::Decay, i)) => Made { expression: Expression::Step(fading[i]), operands: 1 },
             Operand::Input(symbol) => Made { expression: Expression::Input(*symbol), operands: 1 },
             Operand::Constant(value) => Made { expression: Expression::Constant(value.clone()), operands: 1 },
         };

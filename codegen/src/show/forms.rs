@@ -81,7 +81,7 @@ fn determinant(model: &Model, derived: Derived, names: &Names) -> Shown {
         factors: (!factors.is_empty()).then_some(factors),
         content: Content::Closed(Vec::new()),
         parameters: names.parameters.clone(),
-        velocities: model.manipulator.stribeck_velocities(),
+        velocities: model.manipulator.friction_velocities(),
         digits: names.style.digits,
         text: OnceLock::new(),
     };
@@ -114,7 +114,7 @@ fn matrix(model: &Model, part: &ResultPart, name: String, symbol: [String; 2], d
         column_names: columns_of.map(|vector| vector.entries.iter().map(|entry| entry.name.clone()).collect()),
         content: Content::Closed(Vec::new()),
         parameters: names.parameters.clone(),
-        velocities: model.manipulator.stribeck_velocities(),
+        velocities: model.manipulator.friction_velocities(),
         factors: None,
         digits: names.style.digits,
         text: OnceLock::new(),

@@ -159,20 +159,13 @@ impl Reader<'_> {
             }),
             link: fields.get("link").and_then(|(key, node)| self.body(node, key, "`link`", LINK)),
             motor: fields.get("motor").and_then(|(key, node)| self.motor(node, key)),
-            friction: friction.map_or_else(FrictionDescription::default, |fields| FrictionDescription {
-                stribeck: fields.get("stribeck").and_then(|(key, node)| {
+            friction: friction.map_or_else(FrictionDescription::default, |fields| {
+                let stribeck = fields.get("stribeck").and_then(|(key, node)| {
                     let fields = self.mapping(node, "`stribeck`", key, STRIBECK)?;
-                    Some(StribeckDescription {
-                        key,
-                        torque: self.field(&fields, "torque"),
-                        velocity: self.field(&fields, "velocity"),
-                    })
-                }),
-                viscous: self.field(&fields, "viscous"),
-                coulomb: self.field(&fields, "coulomb"),
-                offset: self.field(&fields, "offset"),
-                cubic: self.field(&fields, "cubic"),
-                load: self.field(&fields, "load"),
+                    let (torque, velocity) = (self.field(&fields, "torque"), self.field(&fields, "velocity"));
+                    Some(StribeckDescription { key, torque, velocity })
+                });
+                FrictionDescription::new(|key| self.field(&fields, key), stribeck)
             }),
             spring: fields.get("spring").and_then(|(key, node)| {
                 let fields = self.mapping(node, "`spring`", key, SPRING)?;

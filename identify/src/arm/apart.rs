@@ -6,7 +6,7 @@
 
 use armgen_codegen::derive::base::{dependence, regressor_of};
 use armgen_codegen::derive::parameters::{ParameterKind, ParameterVector, StandardParameter};
-use armgen_codegen::ring::{ExprId, Pool, Symbol};
+use armgen_codegen::ring::{Elementary, ExprId, Pool, Symbol};
 use armgen_codegen::Model;
 
 /// A term of friction that depends on other columns.
@@ -87,9 +87,9 @@ fn gravity(pool: &Pool, y: &[Vec<ExprId>]) -> Vec<Gravity> {
 /// Viscous, Coulomb, offset, load, cubic and Stribeck friction.
 fn terms(pool: &mut Pool, joint: u16, gravity: Gravity) -> [ExprId; 6] {
     let rate = pool.symbol(Symbol::Rate(joint));
-    let sign = pool.symbol(Symbol::RateSign(joint));
+    let sign = pool.symbol(Symbol::OfRate(Elementary::Sign, joint));
     let square = pool.mul(rate, rate);
-    let fading = pool.symbol(Symbol::Stribeck(joint));
+    let fading = pool.symbol(Symbol::OfRate(Elementary::Decay, joint));
     let load = match gravity {
         Gravity::Zero => ExprId::ZERO,
         Gravity::Constant => sign,

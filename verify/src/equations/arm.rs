@@ -82,8 +82,10 @@ pub struct Joint<E> {
     pub load: E,
     /// Stribeck friction at zero rate.
     pub stribeck: E,
-    /// The rate at which it has decayed to 1/e; 1 without Stribeck friction.
+    /// v of exp(-|dq| / v), if its friction has that; else 1.
     pub stribeck_velocity: E,
+    /// Whether its friction has that.
+    pub decays: bool,
     /// Stiffness of the joint's spring.
     pub stiffness: E,
     /// The joint variable where the spring is at rest.
@@ -286,10 +288,11 @@ impl<K: Arithmetic> Builder<'_, K> {
                 None => self.arithmetic.integer(0),
             },
             stribeck: self.optional(joint.stribeck.as_ref().map(|stribeck| &stribeck.torque))?,
-            stribeck_velocity: match &joint.stribeck {
-                Some(stribeck) => self.number(&stribeck.velocity)?,
+            stribeck_velocity: match &joint.decay_velocity() {
+                Some(velocity) => self.number(velocity)?,
                 None => self.arithmetic.integer(1),
             },
+            decays: joint.decay_velocity().is_some(),
             stiffness: self.optional(joint.spring.as_ref().map(|spring| &spring.stiffness))?,
             rest: self.optional(joint.spring.as_ref().map(|spring| &spring.rest))?,
             armature: self.optional(joint.armature.as_ref())?,
@@ -400,6 +403,7 @@ impl<E: Element> Arm<E> {
             load: f(&joint.load),
             stribeck: f(&joint.stribeck),
             stribeck_velocity: f(&joint.stribeck_velocity),
+            decays: joint.decays,
             stiffness: f(&joint.stiffness),
             rest: f(&joint.rest),
             armature: f(&joint.armature),
@@ -457,6 +461,11 @@ impl<E: Element> Arm<E> {
         self.coupling.as_ref().map_or(coordinate, |coupling| coupling.coordinates[coordinate])
     }
 
+    /// Whether the friction of the joint of each coordinate has an exponential.
+    pub fn decays(&self) -> impl Iterator<Item = bool> + '_ {
+        (0..self.dof()).map(|a| self.joints[self.joint_of(a)].decays)
+    }
+
     /// The coordinates that move a joint, with their factors.
     pub fn row(&self, joint: usize) -> Vec<(usize, E)> {
         match &self.coupling {
@@ -495,6 +504,14 @@ impl<E: Element> Arm<E> {
         sums
     }
 
+    /// A state with the velocities of this arm's friction.
+    pub fn with_friction(&self, mut state: State<E>) -> State<E> {
+        for (a, velocity) in state.stribeck_velocities.iter_mut().enumerate() {
+            velocity.clone_from(&self.joints[self.joint_of(a)].stribeck_velocity);
+        }
+        state
+    }
+
     /// The state with an entry for each joint instead of each coordinate; torques stay those of coordinates.
     pub fn state_of_joints<'s>(&self, state: &'s State<E>) -> Cow<'s, State<E>> {
         let Some(coupling) = &self.coupling else { return Cow::Borrowed(state) };
@@ -504,8 +521,8 @@ impl<E: Element> Arm<E> {
             (s.times(d).plus(&c.times(t)), c.times(d).minus(&s.times(t)))
         };
         // Of one coordinate; validation refuses dry friction of others.
-        let sign = |variable: &Variable<E>| match variable.factors.as_slice() {
-            [(a, _)] => state.signs[*a].times(&variable.sign),
+        let of_one = |variable: &Variable<E>, values: &[E]| match variable.factors.as_slice() {
+            [(a, _)] => values[*a].times(&variable.sign),
             _ => self.zero.clone(),
         };
         let own = |joint: usize, values: &[E], otherwise: &E| {
@@ -520,7 +537,8 @@ impl<E: Element> Arm<E> {
             ddq: self.of_joints(&state.ddq),
             dqr: self.of_joints(&state.dqr),
             ddqr: self.of_joints(&state.ddqr),
-            signs: coupling.variables.iter().map(sign).collect(),
+            signs: coupling.variables.iter().map(|variable| of_one(variable, &state.signs)).collect(),
+            directions: coupling.variables.iter().map(|variable| of_one(variable, &state.directions)).collect(),
             stribeck: each(&|joint| own(joint, &state.stribeck, &self.zero)),
             stribeck_velocities: each(&|joint| own(joint, &state.stribeck_velocities, &self.one)),
             ..state.clone()

@@ -180,11 +180,11 @@ pub fn gravity<E: Element>(arm: &Arm<E>, state: &State<E>) -> Vec<E> {
     along_joints(arm, &|along| potential_energy(&moving, &state.moving(along, &still)).rate)
 }
 
-/// F_i = (k_r² F_m + F_v + F_3 dq_i²) rate_i + (F_c + F_s exp(-|dq_i| / v)) sign_i + F_0, with the drawn values of signs and exponentials. The
+/// F_i = (k_r² F_m + F_v + F_3 dq_i²) rate_i + (F_c + F_s exp(-|dq_i| / v)) direction_i + F_0, with the drawn values of signs and exponentials. The
 /// cubic term uses `rates` for one of its factors.
 pub fn friction<E: Element>(arm: &Arm<E>, state: &State<E>, rates: &[E]) -> Vec<E> {
     let (state, rates) = (arm.state_of_joints(state), arm.of_joints(rates));
-    let State { dq, signs, stribeck, .. } = &*state;
+    let State { dq, directions, stribeck, .. } = &*state;
     let torques = arm
         .joints
         .iter()
@@ -196,7 +196,7 @@ pub fn friction<E: Element>(arm: &Arm<E>, state: &State<E>, rates: &[E]) -> Vec<
             }
             let cubic = joint.cubic.times(&dq[i]).times(&dq[i]).times(&rates[i]);
             let dry = joint.coulomb.plus(&joint.stribeck.times(&stribeck[i]));
-            viscous.times(&rates[i]).plus(&dry.times(&signs[i])).plus(&joint.offset).plus(&cubic)
+            viscous.times(&rates[i]).plus(&dry.times(&directions[i])).plus(&joint.offset).plus(&cubic)
         })
         .collect();
     arm.of_coordinates(torques)

@@ -220,10 +220,10 @@ pub fn standard_columns<E: Element>(arm: &Arm<E>, state: &State<E>, columns: &[S
                 single(i, square.times(&state.dqr[i]))
             }
             Standard::Viscous(i) => single(i, state.dqr[i].clone()),
-            Standard::Coulomb(i) => single(i, state.signs[i].clone()),
+            Standard::Coulomb(i) => single(i, state.directions[i].clone()),
             Standard::Offset(i) => single(i, arm.one.clone()),
             Standard::Cubic(i) => single(i, state.dq[i].times(&state.dq[i]).times(&state.dqr[i])),
-            Standard::Stribeck(i) => single(i, state.signs[i].times(&state.stribeck[i])),
+            Standard::Stribeck(i) => single(i, state.directions[i].times(&state.stribeck[i])),
             Standard::Stiffness(i) => single(i, state.q[i].minus(&arm.joints[i].rest)),
         })
         .collect()
@@ -307,7 +307,7 @@ impl<E: Element> KeptAlone<'_, E> {
             let rate = &at_joints.dq[i];
             let steep = cubic.times(rate).times(rate).times(rate);
             let fading = self.of(Standard::Stribeck(i), &joint.stribeck).times(&at_joints.stribeck[i]);
-            viscous.times(rate).plus(&coulomb.plus(&fading).times(&at_joints.signs[i])).plus(&offset).plus(&steep)
+            viscous.times(rate).plus(&coulomb.plus(&fading).times(&at_joints.directions[i])).plus(&offset).plus(&steep)
         };
         let stiffness = |i: usize, joint: &Joint<E>| self.of(Standard::Stiffness(i), &joint.stiffness);
         let spring = |(i, joint): (usize, &Joint<E>)| stiffness(i, joint).times(&at_joints.q[i].minus(&joint.rest));
@@ -416,8 +416,10 @@ pub fn base_map<K: Arithmetic>(
     let states = base.len().div_ceil(n) + 3;
     let (mut left, mut right) = (Vec::new(), Vec::new());
     for _ in 0..states {
-        let fades = (0..n).map(|a| all.contains(&Standard::Stribeck(arm.joint_of(a))));
-        let state = State::draw(arithmetic, n).with_stribeck(arithmetic, fades).with_gravity(arithmetic, gravity_is_argument);
+        let state =
+            State::draw(arithmetic, n).with_decays(arithmetic, arm.decays()).with_gravity(arithmetic, gravity_is_argument);
+        let state = arm.with_friction(state);
+
         let arm = arm.clone().under(&state.g0);
         let y = standard_columns(&arm, &state, base, LinkFrames::Joint);
         let full = standard_columns(&arm, &state, all, LinkFrames::Described);

@@ -25,9 +25,11 @@ pub struct State<E> {
     pub tau: Vec<E>,
     /// Signs of the joint rates, as independent inputs.
     pub signs: Vec<E>,
-    /// exp(-|dq| / v) of the joints with their Stribeck velocities v, as independent inputs.
+    /// What Coulomb friction is multiplied with: the signs.
+    pub directions: Vec<E>,
+    /// exp(-|dq| / v) of the joints whose friction has them, as independent inputs.
     pub stribeck: Vec<E>,
-    /// The Stribeck velocities, for derivatives by the rates; 1 until an arm sets them.
+    /// Their velocities v, for derivatives by the rates; 1 until an arm sets them.
     pub stribeck_velocities: Vec<E>,
     /// The parameter vector.
     pub pi: Vec<E>,
@@ -44,12 +46,13 @@ impl<E: Element> State<E> {
     pub fn of(arguments: Arguments<E>, angles: Vec<(E, E)>, signs: Vec<E>, [zero, one]: [E; 2]) -> State<E> {
         let Arguments { pi, q, dq, ddq, dqr, ddqr, tau, g0 } = arguments;
         let (stribeck, stribeck_velocities) = (vec![zero.clone(); q.len()], vec![one.clone(); q.len()]);
-        State { angles, q, dq, ddq, dqr, ddqr, tau, signs, stribeck, stribeck_velocities, pi, g0, zero, one }
+        let directions = signs.clone();
+        State { angles, q, dq, ddq, dqr, ddqr, tau, signs, directions, stribeck, stribeck_velocities, pi, g0, zero, one }
     }
 
-    /// The same with random exponentials for joints with Stribeck friction.
+    /// The same with random exponentials for joints whose friction has them.
     #[must_use]
-    pub fn with_stribeck<K: Arithmetic<Element = E>>(
+    pub fn with_decays<K: Arithmetic<Element = E>>(
         mut self,
         arithmetic: &mut K,
         joints: impl IntoIterator<Item = bool>,
@@ -77,7 +80,8 @@ impl<E: Element> State<E> {
         let (zero, one) = (arithmetic.integer(0), arithmetic.integer(1));
         let (stribeck, stribeck_velocities) = (vec![zero.clone(); n], vec![one.clone(); n]);
         let [pi, g0] = [Vec::new(), Vec::new()];
-        State { angles, q, dq, ddq, dqr, ddqr, tau, signs, stribeck, stribeck_velocities, pi, g0, zero, one }
+        let directions = signs.clone();
+        State { angles, q, dq, ddq, dqr, ddqr, tau, signs, directions, stribeck, stribeck_velocities, pi, g0, zero, one }
     }
 
     /// The state as dual numbers: joint variables change with `along`, rates with `rates`, everything else is constant.
@@ -106,6 +110,7 @@ impl<E: Element> State<E> {
             ddqr: still(&self.ddqr),
             tau: still(&self.tau),
             signs: still(&self.signs),
+            directions: still(&self.directions),
             pi: still(&self.pi),
             g0: still(&self.g0),
             zero: Dual::constant(&self.zero),
@@ -127,6 +132,7 @@ impl<E> State<E> {
             ddqr: all(self.ddqr),
             tau: all(self.tau),
             signs: all(self.signs),
+            directions: all(self.directions),
             stribeck: all(self.stribeck),
             stribeck_velocities: all(self.stribeck_velocities),
             pi: all(self.pi),

@@ -28,8 +28,8 @@ pub(super) struct Arm<const N: usize> {
 pub(super) enum Unfit {
     /// It has no equations of motion.
     Massless,
-    /// The friction of this joint, counted from 0, is of a kind that is not treated.
-    Friction(usize),
+    /// The friction of this joint, counted from 0, is of a kind that is not treated: its code and its name.
+    Friction { joint: usize, code: &'static str, friction: &'static str },
 }
 
 impl<const N: usize> Arm<N> {
@@ -40,13 +40,8 @@ impl<const N: usize> Arm<N> {
         }
         let value = |p: &Polynomial| p.evaluate(&|ParameterId(i)| manipulator.parameters[i as usize].nominal.clone()).to_f64();
         let given = |p: &Option<Polynomial>| p.as_ref().map_or(0.0, value);
-        let fades = |torque: &Polynomial| value(torque) != 0.0;
-        if let Some(joint) = manipulator
-            .joints
-            .iter()
-            .position(|joint| given(&joint.cubic) != 0.0 || joint.stribeck.as_ref().is_some_and(|of| fades(&of.torque)))
-        {
-            return Err(Unfit::Friction(joint));
+        if let Some((joint, code, friction)) = manipulator.curved_friction() {
+            return Err(Unfit::Friction { joint, code, friction });
         }
         let friction = std::array::from_fn(|i| {
             let Some(joint) = manipulator.joints.get(i) else { return JointFriction::default() };

@@ -3,7 +3,7 @@
 use crate::derive::base;
 use crate::derive::parameters::View;
 use crate::derive::passes::RewriteScope;
-use crate::derive::quantity::{Argument, Documentation, Length, Quantity, Recursion, ResultPart, Typeset};
+use crate::derive::quantity::{Argument, Documentation, Feature, Length, Quantity, Recursion, ResultPart, Typeset};
 use crate::derive::regressor::STARTS;
 
 /// Y_b(q, dq, ddq).
@@ -22,7 +22,7 @@ pub static BASE_REGRESSOR: Quantity = Quantity {
          that carry them. With {NOMINAL_BASE_PARAMETERS} it is the torque of {inverse_dynamics}. For identification take {regressor} with \
          `regressor: base` in the description: it has all base parameters, zero or not.",
     )
-    .with_load("Friction that grows with the load is not linear in parameters: the torque of {inverse_dynamics} has {load_friction} besides."),
+    .with(Feature::LoadFriction, "Friction that grows with the load is not linear in parameters: the torque of {inverse_dynamics} has {load_friction} besides."),
     recursion: Recursion { view: |model, _| View::Vector(model.base_parameters()), prepare: base::place_frames_for_base_parameters, starts: &STARTS, ..Recursion::new(RewriteScope::Frames, |pool, arm, plan, input| base::base_regressor(pool, arm, input.model.base_parameters(), plan).concat()) },
     missing: Quantity::MISSING_WITHOUT_MASS,
     gathers: &[],

@@ -38,10 +38,11 @@ use super::load_friction::{add_load_friction, add_load_friction_derivatives};
 use crate::derive::arm::{symmetric, Arm, Body};
 use crate::derive::columns::ColumnPropagator;
 use crate::derive::factors::LdlFactors;
-use crate::derive::newton_euler::{cubic_coefficient, friction, link_motions, stribeck_slope, wrenches, LinkMotion, Motion};
+use crate::derive::friction::{add_slopes, friction};
+use crate::derive::newton_euler::{link_motions, wrenches, LinkMotion, Motion};
 use crate::derive::passes::RewriteScope;
 use crate::derive::plan::Plan;
-use crate::derive::quantity::{Argument, Documentation, Length, Quantity, Recursion, ResultPart, Typeset};
+use crate::derive::quantity::{Argument, Documentation, Feature, Length, Quantity, Recursion, ResultPart, Typeset};
 use crate::derive::wrench::{axis_component, wrench_to_parent};
 use crate::ring::matrix::Vector;
 use crate::ring::{ExprId, Pool, Symbol};
@@ -74,7 +75,7 @@ pub static INVERSE_DYNAMICS_DERIVATIVES: Quantity = Quantity {
         "two matrices `m[joint of tau][joint of q or dq]`; units of tau per rad or m, and per rad/s or m/s. Coulomb friction counts as constant: its \
          derivative is taken as 0, at rest too.",
     )
-    .with_load(LOAD),
+    .with(Feature::LoadFriction, LOAD),
     recursion: Recursion::new(RewriteScope::Dynamics, |pool, arm, plan, _| {
         let motion = Motion::plain(pool, arm);
         let (by_q, by_dq) = inverse_dynamics_derivatives(pool, arm, plan, &motion);
@@ -115,7 +116,7 @@ pub static FORWARD_DYNAMICS_DERIVATIVES: Quantity = Quantity {
         "three matrices `m[joint of ddq][joint of q, dq or tau]`; units of ddq per rad or m, per rad/s or m/s, and per N m or N. The third is the \
          inverse of the inertia matrix. Coulomb friction counts as constant: its derivative is taken as 0, at rest too.",
     )
-    .with_load(LOAD),
+    .with(Feature::LoadFriction, LOAD),
     recursion: Recursion {
         in_coordinates: true,
         ..Recursion::new(RewriteScope::Dynamics, |pool, arm, plan, _| {
@@ -134,23 +135,14 @@ const LOAD: &str =
 
 type Rows = Vec<Vec<ExprId>>;
 
-/// ∂tau/∂q and ∂tau/∂dq of the torques with friction, F_v + 3 F_3 dq² and the slope of Stribeck friction in the second, and springs, k in
-/// the first; Coulomb friction counts as constant.
+/// ∂tau/∂q and ∂tau/∂dq of the torques with friction, in the second its slopes, and springs, k in the first; functions of
+/// friction that jump count as constant there.
 pub fn inverse_dynamics_derivatives(pool: &mut Pool, arm: &Arm, plan: &mut Plan, motion: &Motion) -> (Rows, Rows) {
     let c = coriolis::coriolis_matrix(pool, arm, plan);
     let two = pool.integer(2);
     let mut by_rates: Rows = c.iter().map(|row| row.iter().map(|&entry| pool.mul(two, entry)).collect()).collect();
-    for (i, joint) in arm.joints.iter().enumerate() {
-        by_rates[i][i] = pool.add(by_rates[i][i], joint.viscous);
-        if joint.cubic != ExprId::ZERO {
-            let (steep, three) = (cubic_coefficient(pool, arm, i), pool.integer(3));
-            let slope = pool.mul(three, steep);
-            by_rates[i][i] = pool.add(by_rates[i][i], slope);
-        }
-        if joint.stribeck != ExprId::ZERO {
-            let slope = stribeck_slope(pool, arm, i);
-            by_rates[i][i] = pool.add(by_rates[i][i], slope);
-        }
+    for i in 0..arm.dof() {
+        by_rates[i][i] = add_slopes(pool, arm, i, by_rates[i][i]);
     }
     let mut by_positions = by_positions(pool, arm, motion);
     for (i, joint) in arm.joints.iter().enumerate() {

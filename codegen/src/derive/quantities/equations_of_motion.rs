@@ -4,7 +4,7 @@ use super::coriolis::{inertia_and_coriolis, CORIOLIS_MATRIX};
 use super::gravity::{gravity, GRAVITY};
 use super::inertia::INERTIA_MATRIX;
 use crate::derive::passes::RewriteScope;
-use crate::derive::quantity::{Argument, Documentation, Length, Quantity, Recursion, ResultPart, Structure, Typeset};
+use crate::derive::quantity::{Argument, Documentation, Feature, Length, Quantity, Recursion, ResultPart, Structure, Typeset};
 
 /// B, C and g together.
 pub static EQUATIONS_OF_MOTION: Quantity = Quantity {
@@ -40,7 +40,7 @@ pub static EQUATIONS_OF_MOTION: Quantity = Quantity {
         "B(q) ddq + C(q, dq) dq + F(dq) + g(q) = tau                        (Siciliano et al., eq. 7.42)",
         "the three terms as the functions of their own return them.",
     )
-    .with_springs("A spring of a joint adds k_s (q_i - rest) to g_i, and 1/2 k_s (q_i - rest)² to U."),
+    .with(Feature::Spring, "A spring of a joint adds k_s (q_i - rest) to g_i, and 1/2 k_s (q_i - rest)² to U."),
     recursion: Recursion::new(RewriteScope::Dynamics, |pool, arm, plan, _| {
         let (b, c) = inertia_and_coriolis(pool, arm, plan);
         let g = gravity(pool, arm, plan);

@@ -10,7 +10,7 @@ use crate::derive::model::Model;
 use crate::derive::newton_euler::deflection;
 use crate::derive::parameters::{ParameterKind, View};
 use crate::derive::passes::RewriteScope;
-use crate::derive::quantity::{Argument, Documentation, Length, Quantity, Recursion, ResultPart, Typeset};
+use crate::derive::quantity::{Argument, Documentation, Feature, Length, Quantity, Recursion, ResultPart, Typeset};
 use crate::ring::matrix::Vector;
 use crate::ring::{ExprId, Pool};
 
@@ -32,7 +32,7 @@ pub static POTENTIAL_ENERGY: Quantity = Quantity {
             "U(q) = - sum_i m_i g0' p_li                                       (Siciliano et al., eq. 7.36)",
             "an energy, J.",
         )
-        .with_springs("A spring of a joint adds 1/2 k_s (q_i - rest)².")
+        .with(Feature::Spring, "A spring of a joint adds 1/2 k_s (q_i - rest)².")
         .with_base(
             "Base parameters leave out what no torque depends on: this is the energy of the arm that has them in place of the standard ones, and \
              0 for those that are not among them. At {NOMINAL_PARAMETERS} it is {potential_energy} and a constant, \
@@ -60,7 +60,7 @@ pub static CENTER_OF_MASS: Quantity = Quantity {
             "p_c(q) = sum_i m_i p_li / m,  m = sum_i m_i,  U(q) = - m g0' p_c",
             "its x, y and z, m.",
         )
-        .with_springs("In {potential_energy} springs have their energies besides.")
+        .with(Feature::Spring, "In {potential_energy} springs have their energies besides.")
     },
     recursion: Recursion::new(RewriteScope::KeepParameters, |pool, arm, _, input| {
         let (first, mass) = (first_moment(pool, arm), total_mass(pool, arm, input.model, input.view));

@@ -7,7 +7,7 @@ use crate::derive::factors::LdlFactors;
 use crate::derive::newton_euler::{inverse_dynamics, Motion};
 use crate::derive::passes::RewriteScope;
 use crate::derive::plan::Plan;
-use crate::derive::quantity::{Argument, Documentation, Length, Quantity, Recursion, ResultPart, Typeset};
+use crate::derive::quantity::{Argument, Documentation, Feature, Length, Quantity, Recursion, ResultPart, Typeset};
 use crate::ring::{ExprId, Pool, Symbol};
 
 /// ddq(q, dq, tau).
@@ -30,7 +30,7 @@ pub static FORWARD_DYNAMICS: Quantity = Quantity {
             "ddq = B(q)^-1 (tau - C(q, dq) dq - F(dq) - g(q))                    (Siciliano et al., Sect. 7.6)",
             "an acceleration for each joint, rad/s² (revolute) or m/s² (prismatic).",
         )
-        .with_load("F is {friction} and {load_friction} together.")
+        .with(Feature::LoadFriction, "F is {friction} and {load_friction} together.")
     },
     recursion: Recursion {
         in_coordinates: true,

@@ -6,9 +6,9 @@
 //!
 //! and F_0 + F_3 dq_i³ + F_s sign(dq_i) exp(-|dq_i| / v_s) where the description has them.
 
-use crate::derive::newton_euler;
+use crate::derive::friction;
 use crate::derive::passes::RewriteScope;
-use crate::derive::quantity::{Argument, Documentation, Length, Quantity, Recursion, ResultPart, Typeset};
+use crate::derive::quantity::{Argument, Documentation, Feature, Length, Quantity, Recursion, ResultPart, Typeset};
 use crate::ring::Symbol;
 
 /// F(dq).
@@ -24,12 +24,15 @@ pub static FRICTION: Quantity = Quantity {
         "F_i = (k_r² F_m + F_v) dq_i + F_c sign(dq_i), sign(0) = 0          (Siciliano et al., eq. 7.42)",
         "a torque, N m (revolute), or a force, N (prismatic), for each joint.",
     )
-    .with_more_friction("Where the description has them, F_0 + F_3 dq_i³ are added; with F_0 the torque need not have that sign.")
-    .with_stribeck("Stribeck friction adds F_s sign(dq_i) exp(-|dq_i| / v_s), with the numbers of its joint.")
-    .with_load("What grows with the load of a joint depends on q and is {load_friction}."),
+    .with(
+        Feature::OffsetOrCubic,
+        "Where the description has them, F_0 + F_3 dq_i³ are added; with F_0 the torque need not have that sign.",
+    )
+    .with(Feature::Stribeck, "Stribeck friction adds F_s sign(dq_i) exp(-|dq_i| / v_s), with the numbers of its joint.")
+    .with(Feature::LoadFriction, "What grows with the load of a joint depends on q and is {load_friction}."),
     recursion: Recursion::new(RewriteScope::KeepParameters, |pool, arm, _, _| {
         let rates = arm.symbols(pool, Symbol::Rate);
-        newton_euler::friction(pool, arm, &rates)
+        friction::friction(pool, arm, &rates)
     }),
     missing: Quantity::MISSING_WITHOUT_MASS,
     gathers: &[],

@@ -11,7 +11,7 @@ use crate::derive::arm::Arm;
 use crate::derive::newton_euler::add_springs;
 use crate::derive::passes::RewriteScope;
 use crate::derive::plan::{Place, Plan};
-use crate::derive::quantity::{Argument, Documentation, Length, Quantity, Recursion, ResultPart, Typeset};
+use crate::derive::quantity::{Argument, Documentation, Feature, Length, Quantity, Recursion, ResultPart, Typeset};
 use crate::pass::Pass;
 use crate::ring::matrix::Vector;
 use crate::ring::{ExprId, Pool};
@@ -31,7 +31,7 @@ pub static GRAVITY: Quantity = Quantity {
             "g(q) = dU/dq                                                      (Siciliano et al., eq. 7.39)",
             "a torque, N m (revolute), or a force, N (prismatic), for each joint.",
         )
-        .with_springs("A spring of a joint adds k_s (q_i - rest) to g_i, and 1/2 k_s (q_i - rest)² to U.")
+        .with(Feature::Spring, "A spring of a joint adds k_s (q_i - rest) to g_i, and 1/2 k_s (q_i - rest)² to U.")
     },
     recursion: Recursion::new(RewriteScope::Dynamics, |pool, arm, plan, _| gravity(pool, arm, plan)),
     missing: Quantity::MISSING_WITHOUT_MASS,

@@ -3,7 +3,7 @@
 use super::load_friction::add_load_friction;
 use crate::derive::newton_euler::{inverse_dynamics, Motion};
 use crate::derive::passes::RewriteScope;
-use crate::derive::quantity::{Argument, Documentation, Length, Quantity, Recursion, ResultPart, Typeset};
+use crate::derive::quantity::{Argument, Documentation, Feature, Length, Quantity, Recursion, ResultPart, Typeset};
 
 /// tau(q, dq, ddq).
 pub static INVERSE_DYNAMICS: Quantity = Quantity {
@@ -23,7 +23,7 @@ pub static INVERSE_DYNAMICS: Quantity = Quantity {
         "tau = B(q) ddq + C(q, dq) dq + F(dq) + g(q)                        (Siciliano et al., eq. 7.42)",
         "a torque, N m (revolute), or a force, N (prismatic), for each joint.",
     )
-    .with_load("F is {friction} and {load_friction} together."),
+    .with(Feature::LoadFriction, "F is {friction} and {load_friction} together."),
     recursion: Recursion::new(RewriteScope::Dynamics, |pool, arm, plan, _| {
         let motion = Motion::plain(pool, arm);
         let mut tau = inverse_dynamics(pool, arm, &motion);

@@ -13,8 +13,8 @@ use super::gravity::gravity;
 use crate::derive::arm::Arm;
 use crate::derive::passes::RewriteScope;
 use crate::derive::plan::Plan;
-use crate::derive::quantity::{Argument, Documentation, Length, Quantity, Recursion, ResultPart, Typeset};
-use crate::ring::{ExprId, Pool, Symbol};
+use crate::derive::quantity::{Argument, Documentation, Feature, Length, Quantity, Recursion, ResultPart, Typeset};
+use crate::ring::{Elementary, ExprId, Pool, Symbol};
 
 /// F_l |g| sign(dq).
 pub static LOAD_FRICTION: Quantity = Quantity {
@@ -37,7 +37,7 @@ pub static LOAD_FRICTION: Quantity = Quantity {
             "F_l,i |g_i(q)| sign(dq_i), sign(0) = 0, F_l,i a number without unit, g_i(q) as {gravity} returns it",
             "a torque, N m (revolute), or a force, N (prismatic), for each joint; 0 where the description has no `load`.",
         )
-        .with_springs("What a spring of a joint adds to g_i is part of its load.")
+        .with(Feature::Spring, "What a spring of a joint adds to g_i is part of its load.")
     },
     recursion: Recursion::new(RewriteScope::Dynamics, |pool, arm, plan, _| {
         let mut torques = vec![ExprId::ZERO; arm.dof()];
@@ -62,7 +62,7 @@ fn loaded_joints(pool: &mut Pool, arm: &Arm, plan: &mut Plan) -> (Vec<(usize, Ex
     for (i, joint) in arm.joints.iter().enumerate() {
         if joint.load != ExprId::ZERO && g[i] != ExprId::ZERO {
             pool.set_gravity(i as u16, g[i]);
-            let sign = pool.symbol(Symbol::RateSign(i as u16));
+            let sign = pool.symbol(Symbol::OfRate(Elementary::Sign, i as u16));
             loaded.push((i, pool.mul(joint.load, sign)));
         }
     }

@@ -20,7 +20,7 @@
 
 use crate::derive::arm::{symmetric, Arm};
 use crate::derive::passes::RewriteScope;
-use crate::derive::quantity::{Argument, Documentation, Length, Quantity, Recursion, ResultPart, Typeset};
+use crate::derive::quantity::{Argument, Documentation, Feature, Length, Quantity, Recursion, ResultPart, Typeset};
 use crate::derive::wrench::{axis_component, wrench_to_parent};
 use crate::ring::matrix::{Vector, ZERO};
 use crate::ring::{ExprId, Pool, Symbol};
@@ -65,7 +65,7 @@ pub static CORIOLIS_TRANSPOSE_TIMES: Quantity = Quantity {
         "C' dq = dT/dq = (dB/dt) dq - C dq,  dp/dt = tau + C' dq - F - g    (De Luca and Mattone 2003)",
         "a torque, N m (revolute), or a force, N (prismatic), for each joint, on the right of the equation of dp/dt.",
     )
-    .with_load("F is {friction} and {load_friction} together."),
+    .with(Feature::LoadFriction, "F is {friction} and {load_friction} together."),
     recursion: Recursion::new(RewriteScope::Dynamics, |pool, arm, _, _| coriolis_transpose_times(pool, arm)),
     missing: Quantity::MISSING_WITHOUT_MASS,
     gathers: &[],

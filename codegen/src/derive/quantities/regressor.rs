@@ -5,7 +5,7 @@
 use crate::derive::newton_euler::{inverse_dynamics, Motion};
 use crate::derive::parameters::View;
 use crate::derive::passes::RewriteScope;
-use crate::derive::quantity::{Argument, Documentation, Length, Quantity, Recursion, ResultPart, Typeset};
+use crate::derive::quantity::{Argument, Documentation, Feature, Length, Quantity, Recursion, ResultPart, Typeset};
 use crate::derive::regressor::{regressor_by_plan, STARTS};
 
 /// In the order of the emitted module.
@@ -25,9 +25,9 @@ pub static REGRESSOR: Quantity = Quantity {
         "`y[joint][parameter]`, parameters in the order of {PARAMETER_NAMES}. In F viscous friction acts on dqr, Coulomb friction on sign(dq). \
          With dqr = dq and ddqr = ddq this is the regressor of inverse dynamics.",
     )
-    .with_more_friction("In F cubic friction is F_3 dq² dqr.")
-    .with_stribeck("In F Stribeck friction is F_s sign(dq) exp(-|dq| / v_s), linear in F_s; v_s is a number of the description.")
-    .with_load("Friction that grows with the load is not linear in parameters and not in F: {load_friction} is added to Y pi + tau_known."),
+    .with(Feature::OffsetOrCubic, "In F cubic friction is F_3 dq² dqr.")
+    .with(Feature::Stribeck, "In F Stribeck friction is F_s sign(dq) exp(-|dq| / v_s), linear in F_s; v_s is a number of the description.")
+    .with(Feature::LoadFriction, "Friction that grows with the load is not linear in parameters and not in F: {load_friction} is added to Y pi + tau_known."),
     recursion: Recursion { view: |model, _| View::Vector(&model.parameters), starts: &STARTS, ..Recursion::new(RewriteScope::Frames, |pool, arm, plan, input| regressor_by_plan(pool, arm, &input.model.parameters, plan).concat()) },
     missing: Quantity::MISSING_WITHOUT_MASS,
     gathers: &[],
@@ -52,7 +52,7 @@ pub static KNOWN_TORQUE: Quantity = Quantity {
         "tau_known = B(q) ddqr + C(q, dq) dqr + F + g(q) - Y pi",
         "a torque, N m (revolute), or a force, N (prismatic), for each joint.",
     )
-    .with_load("Friction that grows with the load is not in it: {load_friction}."),
+    .with(Feature::LoadFriction, "Friction that grows with the load is not in it: {load_friction}."),
     recursion: Recursion {
         view: |model, _| View::VectorZero(&model.parameters),
         ..Recursion::new(RewriteScope::KeepParameters, |pool, arm, _, _| {
