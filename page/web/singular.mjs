@@ -104,7 +104,7 @@ export function pairs(data, w, smallest) {
     const { factors, singular } = data.firstSix;
     const alone = factors.flatMap((factor, f) => {
         const { joint, period, values } = zeros(singular[f]) ?? { joint: Number(singular[f].match(/\d+/)), period: 0, values: rootsOf(factor).map((value) => ({ value })) };
-        return values.flatMap(({ value }) => (period === Math.PI ? [value, value > 0 ? value - Math.PI : value + Math.PI] : [value]).map((value) => [joint - 1, value]));
+        return values.flatMap(({ value }) => (period === Math.PI ? [value, value > 0 ? value - Math.PI : value + Math.PI] : [value]).map((value) => [joint - 1, withZero(value)]));
     });
     // What the others do.
     const elsewhere = sequence(data.rows.length, 3).map((part) => part.map((x) => 6 * x - 3));
@@ -136,6 +136,11 @@ export function refined(of, near) {
         const [a, b] = [of(x - h), of(x + h)];
         if (a + b > 0) x += (h * (a - b)) / (a + b);
     }
+    return withZero(x);
+}
+
+/** A zero x without its rounding where it is 0. @param {number} x */
+function withZero(x) {
     return Math.abs(x) < 1e-14 ? 0 : x;
 }
 
