@@ -388,6 +388,28 @@ class Robot:
         """Their values in the description."""
         return _constant(self._arm.parameters[1])
 
+    def payload_parameters(self, mass: Any, com: Any, inertia: Any = None) -> Any:
+        """The ten parameters of a body in the hand, for the entries whose names end in `p`:
+
+        m, m cx, m cy, m cz, Ixx, Ixy, Iyy, Ixz, Iyz, Izz, about the origin of the end-effector frame, which includes the tool.
+
+        mass: kg. com: its centre of mass in that frame, m. inertia: 3 x 3 tensor about the centre of mass along the axes of that frame,
+        kg m²; Ixy is -∫xy dm; 0 if left out, as of a point. By Steiner its part is inertia + m (com' com 1 - com com').
+
+        Raises ValueError if the description has no payload: `payload: {}` adds one of 0 kg.
+        """
+        import numpy as np
+
+        if not any(name.endswith("Izzp") for name in self.parameter_names):
+            raise ValueError("this arm has no payload: `payload: {}` in the description adds one of 0 kg, with its ten parameters")
+        m, (x, y, z) = float(mass), np.asarray(com, float)
+        i = np.zeros((3, 3)) if inertia is None else np.asarray(inertia, float)
+        if i.shape != (3, 3):
+            raise ValueError(f"inertia: 3 x 3 numbers, not {' x '.join(map(str, i.shape))}")
+        xx, xy, yy = i[0, 0] + m * (y * y + z * z), i[0, 1] - m * (x * y), i[1, 1] + m * (x * x + z * z)
+        xz, yz, zz = i[0, 2] - m * (x * z), i[1, 2] - m * (y * z), i[2, 2] + m * (x * x + y * y)
+        return np.array([m, m * x, m * y, m * z, xx, xy, yy, xz, yz, zz])
+
     @property
     def base_parameter_names(self) -> tuple[str, ...]:
         """The base parameters."""

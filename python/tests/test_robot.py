@@ -40,6 +40,28 @@ def test_facts_of_a_description(panda):
     assert np.abs(torque - panda.inverse_dynamics(q, q, q)).max() < 1e-12
 
 
+def test_a_payload_is_a_body_of_the_description(panda):
+    com, inertia = [0.04, 0.01, -0.02], np.array([[0.03, 0.001, -0.002], [0.001, 0.04, 0.003], [-0.002, 0.003, 0.02]])
+    names = dict(zip(("xx", "xy", "yy", "xz", "yz", "zz"), inertia[[0, 0, 1, 0, 1, 2], [0, 1, 1, 2, 2, 2]].tolist()))
+    empty = armgen.loads(panda.text + "payload: {}\n")
+    full = armgen.loads(panda.text + f"payload: {{mass: 2.5, com: {com}, inertia: {names}}}\n".replace("'", ""))
+    pi = empty.nominal_parameters.copy()
+    pi[empty.parameter_names.index("mp"):][:10] = empty.payload_parameters(2.5, com, inertia)
+    q = np.linspace(-1, 1, 7)
+    assert np.abs(empty.inverse_dynamics_with(pi, q, q, q) - full.inverse_dynamics(q, q, q)).max() < 1e-11
+    # The same bits as the emitted function.
+    scope = {}
+    exec(next(iter(empty.generate("python", functions=["gravity_with"]).values())), scope)
+    emitted = scope["payload_parameters"](2.5, com, inertia.tolist())
+    assert empty.payload_parameters(2.5, com, inertia).tolist() == list(emitted)
+    point = empty.payload_parameters(2, [0, 0, 0.1])
+    assert point.tolist() == [2, 0, 0, 0.2, 2 * 0.1 * 0.1, 0, 2 * (0.1 * 0.1), 0, 0, 0]
+    with pytest.raises(ValueError, match="no payload: `payload: {}`"):
+        panda.payload_parameters(1, [0, 0, 0])
+    with pytest.raises(ValueError, match="3 x 3 numbers, not 3"):
+        empty.payload_parameters(1, [0, 0, 0], [1, 1, 1])
+
+
 def test_facts_of_a_urdf():
     robot = armgen.loads(ARM, "arm.urdf")
     assert robot.joint_names == ("shoulder", "slide") and robot.revolute.tolist() == [True, False]
