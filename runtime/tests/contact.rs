@@ -131,6 +131,54 @@ fn a_model_that_is_off_raises_no_alarm() {
     assert!(alarms > 0);
 }
 
+/// Ten models with masses off by a percent follow ten random motions for a thousand seconds each, with torque noise of 2 % that is correlated
+/// over 20 ms. The threshold is the spread of the residual on the first hundred seconds of another motion: no alarm.
+#[test]
+#[ignore = "full: minutes, ten million samples"]
+fn no_alarm_in_ten_thousand_seconds() {
+    let plant = ur5();
+    let mut noise = Noise::new(11);
+    for round in 0..10 {
+        let model = ur5().off(|_| 0.01 * noise.normal());
+        let mut motion = |samples: usize, observer: &mut MomentumObserver<f64, 6>| {
+            let mut within = |low: f64, high: f64| low + (high - low) * noise.uniform();
+            let wave = |k: usize| [within(0.1, 0.3), (0.5 + k as f64) * within(0.5, 1.0), within(0.0, 6.3)];
+            let mut all = [0, 1, 2].repeat(6).into_iter().map(wave);
+            let waves: [[[f64; 3]; 3]; 6] = std::array::from_fn(|_| std::array::from_fn(|_| all.next().unwrap()));
+            let (mut coloured, memory) = (SVector::<f64, 6>::zeros(), (-PERIOD / 0.02_f64).exp());
+            let (mut squares, mut alarms) = (SVector::<f64, 6>::zeros(), 0);
+            let mut tau = SVector::zeros();
+            for k in 0..samples {
+                let t = k as f64 * PERIOD;
+                let of = |derivative: usize| {
+                    SVector::<f64, 6>::from_fn(|j, _| {
+                        let term = |[a, w, phase]: &[f64; 3]| {
+                            let (s, c) = (w * t + phase).sin_cos();
+                            a * [s, w * c, -w * w * s][derivative]
+                        };
+                        START[j] + waves[j].iter().map(term).sum::<f64>() - if derivative > 0 { START[j] } else { 0.0 }
+                    })
+                };
+                let (state, ddq) = (State { q: of(0), dq: of(1) }, of(2));
+                let contact = observer.step(&model, &state, &tau, &SVector::zeros()).unwrap();
+                if k > 1000 {
+                    squares += contact.residual.component_mul(&contact.residual);
+                    alarms += usize::from(contact.is_contact);
+                }
+                coloured = memory * coloured + (1.0 - memory * memory).sqrt() * SVector::from_fn(|_, _| noise.normal());
+                tau = plant.inverse_dynamics(&state.q, &state.dq, &ddq)
+                    + coloured.component_mul(&vector![1.2, 1.2, 0.6, 0.1, 0.1, 0.1]);
+            }
+            ((squares / samples as f64).map(f64::sqrt), alarms)
+        };
+        let quiet = |spread: [f64; 6]| MomentumObserver::new([GAIN; 6], PERIOD, threshold(spread), 100).unwrap();
+        let (spread, _) = motion(100_000, &mut quiet([1e9; 6]));
+        let (_, alarms) = motion(1_000_000, &mut quiet(spread.into()));
+        println!("round {round}: spread {:.3?}, {alarms} alarms", spread.as_slice());
+        assert_eq!(alarms, 0, "round {round}");
+    }
+}
+
 #[test]
 fn thresholds_have_their_parts() {
     let parts = Threshold {
