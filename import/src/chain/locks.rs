@@ -121,6 +121,11 @@ impl Locks {
         self.followers.get(&joint).map_or(&[], Vec::as_slice)
     }
 
+    /// All joints that follow others.
+    pub(super) fn all_followers(&self) -> BTreeSet<usize> {
+        self.followers.values().flatten().copied().collect()
+    }
+
     /// Whether a joint stands still because its multiplier is 0.
     pub(super) fn rests(&self, joint: usize) -> bool {
         self.resting.contains(&joint)
