@@ -248,6 +248,9 @@ fn several(tree: &Tree, base: usize, locks: &Locks, groups: &BTreeMap<usize, Vec
         let (tip, joints) = (shown(&tree.links[link].name), number(joints));
         help = format!("{help}; or end the arm where it branches, say before the fingers: `--tip {tip}` ({joints})");
     }
+    if groups.len() <= MAX_TIPS {
+        help = format!("{help}; or take all branches: `--all`");
+    }
     let mut fault = Diagnostic::new(Code::SeveralTips, tree.links[first].span, message, "may be the tip", help);
     for (chain, _) in chains.iter().filter(|(chain, _)| chain.link != first).take(3) {
         fault = fault.also(tree.links[chain.link].span, "may be the tip, too");
