@@ -224,6 +224,7 @@ fn run_tutorial(name: &str, page: &str, urdf: &str, lines: usize) -> PathBuf {
 fn a_gripper_goes_from_a_urdf_to_torques() {
     let (page, urdf) = (include_str!("../../docs/gripper.md"), include_str!("../../tests/data/trees/gripper.urdf"));
     let folder = run_tutorial("gripper", page, urdf, 4);
+    check(&folder, &["page", "gripper.yaml", "--out", "gripper.html"], 0);
     // The coupling comes back: under other names of tips the description is the same.
     check(&folder, &["export", "gripper.yaml", "--format", "urdf", "--out", "back.urdf"], 0);
     check(&folder, &["import", "back.urdf", "--tip", "tcp", "--tip", "left", "--out", "back.yaml"], 0);

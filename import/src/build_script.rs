@@ -45,6 +45,20 @@ impl Robot {
         self
     }
 
+    /// One of several end effectors: its name, and the link whose frame is its.
+    #[must_use]
+    pub fn named_tip(mut self, name: impl Into<String>, link: impl Into<String>) -> Robot {
+        self.options.tips.push((Some(name.into()), link.into()));
+        self
+    }
+
+    /// Every joint below the base, and an end effector on each link that ends a branch.
+    #[must_use]
+    pub fn all(mut self) -> Robot {
+        self.options.all = true;
+        self
+    }
+
     /// A joint that stands still, and where: an expression such as `0.04` or `pi/4`.
     #[must_use]
     pub fn lock(mut self, joint: impl Into<String>, value: impl Into<String>) -> Robot {

@@ -165,13 +165,14 @@ pub(crate) fn arm(
     };
     let mut notes = Vec::new();
     let mut tips: Vec<(Option<&str>, usize)> = Vec::new();
+    let mut others = Vec::new();
     for (name, link) in &options.tips {
         tips.push((name.as_deref().or(Some(link)), named_link(tree, Some(link), "--tip", diagnostics)??));
     }
     if options.all {
-        let (all, noted) = tips::all(tree, base, &locks, diagnostics)?;
-        tips.extend(all.into_iter().map(|link| (Some(tree.links[link].name.as_str()), link)));
-        notes = noted;
+        let all = tips::all(tree, base, &locks, diagnostics)?;
+        tips.extend(all.tips.into_iter().map(|link| (Some(tree.links[link].name.as_str()), link)));
+        (others, notes) = (all.others, all.notes);
     }
     if tips.is_empty() {
         let tip = named_link(tree, options.tip.as_deref(), "--tip", diagnostics)?;
@@ -182,7 +183,7 @@ pub(crate) fn arm(
         (tips, notes) = (vec![(None, tip)], noted);
     }
     let mut path: Vec<usize> = Vec::new();
-    for &(_, tip) in &tips {
+    for tip in tips.iter().map(|(_, tip)| *tip).chain(others) {
         let of_tip = path_to(tree, base, tip, diagnostics)?;
         path.extend(of_tip.into_iter().filter(|joint| !path.contains(joint)).collect::<Vec<_>>());
     }

@@ -8,7 +8,6 @@ use serde_json::{json, Map, Value};
 use crate::bound::Bound;
 use crate::chain::{Arm, Attached, End, Follows, Row};
 use crate::format::Format;
-use crate::pose::factor;
 use crate::snap::Snapped;
 
 /// The parts that were taken, changed and left out.
@@ -151,7 +150,9 @@ fn words(source: &Source, arm: &Arm, bound: Bound, left_out: &BTreeMap<String, u
     if !renamed.is_empty() {
         lines.push(format!("renamed: {}", list(renamed)));
     }
-    let led: Vec<String> = arm.rows.iter().filter_map(|row| Some(coupling(row, row.follows.as_ref()?, arm))).collect();
+    let led = arm.rows.iter().filter_map(|row| Some((row, row.follows.as_ref()?)));
+    let led: Vec<String> =
+        led.map(|(row, follows)| format!("`{}` = {}", row.name, follows.formula(&arm.rows[follows.leader].name))).collect();
     if !led.is_empty() {
         lines.push(format!("joints that follow others: {}", list(led)));
     }
@@ -212,16 +213,6 @@ fn words(source: &Source, arm: &Arm, bound: Bound, left_out: &BTreeMap<String, u
         lines.push(format!("left out: {}", all.join(", ")));
     }
     lines
-}
-
-/// How a joint follows another one, as a formula.
-fn coupling(row: &Row, follows: &Follows, arm: &Arm) -> String {
-    let leader = &arm.rows[follows.leader].name;
-    let offset = if follows.offset.is_zero() { String::new() } else { format!(" + {}", factor(&follows.offset.text)) };
-    match follows.factor.text.as_str() {
-        "1" => format!("`{}` = `{leader}`{offset}", row.name),
-        by => format!("`{}` = {by} `{leader}`{offset}", row.name),
-    }
 }
 
 /// The bodies of a link that are not its own.

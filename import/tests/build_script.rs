@@ -22,6 +22,15 @@ fn a_build_script_generates_from_a_file_of_another_format() {
     }
     assert!(out.join("everything.yaml").is_file());
 
+    let coupled = || Robot::new(files.join("bad/follower-limits.urdf"));
+    for (robot, function) in
+        [(coupled().all(), "three_direct_kinematics"), (coupled().named_tip("hand", "two"), "hand_direct_kinematics")]
+    {
+        let written =
+            robot.imported().functions([function, "joint_variables"]).try_generate().unwrap_or_else(|error| panic!("{error}"));
+        assert!(std::fs::read_to_string(&written[0]).expect("the module").contains(&format!("pub fn {function}(")));
+    }
+
     let faulty = Robot::new(files.join("bad/zero-axis.urdf")).try_description().expect_err("a faulty file");
     assert!(faulty.contains("error[zero-axis]") && faulty.contains("zero-axis.urdf:"), "{faulty}");
     let missing = Robot::new("no such.urdf").try_description().expect_err("no file");

@@ -138,3 +138,23 @@ fn a_follower_whose_limits_allow_its_leader_no_motion_loses_them() {
         );
     }
 }
+
+/// Of nine branches, one whose last joint follows another one has no end effector, and still all of its joints.
+#[test]
+fn where_branches_are_too_many_followers_have_no_end_effector() {
+    let hand = |mimic: &str| {
+        let mut joints = vec![joint("wrist", "revolute", "base", "")];
+        joints.extend((0..8).map(|k| joint(&format!("finger{k}"), "revolute", "wrist_link", "")));
+        joints.push(joint("near", "revolute", "wrist_link", ""));
+        joints.push(joint("far", "revolute", "near_link", mimic));
+        robot(&joints)
+    };
+    let all = Options { all: true, ..Options::default() };
+    let imported = imported(&hand("<mimic joint='near'/>"), &all);
+    let arm = valid(&imported.yaml);
+    assert_eq!((arm.joints.len(), arm.dof(), arm.tips.len()), (11, 10, 8));
+    let line = "without an end effector, since the last joint follows another one: `far_link` (3 joints)";
+    assert!(imported.report.lines().iter().any(|found| found == line), "{:?}", imported.report.lines());
+    let (none, diagnostics) = import(&hand(""), &all);
+    assert!(none.is_none() && diagnostics.iter().any(|fault| fault.code.name() == "several-tips"));
+}

@@ -70,7 +70,8 @@ pub(crate) fn document(parts: &Parts<'_>) -> String {
     }
     text += "</nav>\n";
     text += ARM;
-    text += &sliders(parts.rows);
+    let of_coordinates = parts.model.manipulator.coordinates();
+    text += &sliders(of_coordinates.iter().map(|coordinate| &parts.rows[coordinate.index]));
     text += "</section>\n<div id=\"content\">\n";
     for (id, title, content) in &sections {
         let _ = write!(
@@ -95,11 +96,13 @@ fn sections<'p>(parts: &'p Parts<'_>) -> Vec<(&'static str, &'static str, Cow<'p
     let bodies = "<details open><summary>Bodies</summary><div id=\"bodies\"></div></details>\n";
     let mut all = vec![
         ("data-sheet", "Data sheet", (table + frames + bodies + parts.drives).into()),
-        ("check", "Check against the real arm", CHECK.into()),
         ("numbers", "Numbers", NUMBERS.into()),
         ("equations", "Equations", parts.equations.into()),
         ("workspace", "Workspace", WORKSPACE.into()),
     ];
+    if parts.model.manipulator.coupling.is_none() {
+        all.insert(1, ("check", "Check against the real arm", CHECK.into()));
+    }
     all.extend(parts.logs.iter().map(|(title, logs)| ("logs", *title, logs.into())));
     all.push(("cost", "Cost", parts.cost.into()));
     all
@@ -107,14 +110,17 @@ fn sections<'p>(parts: &'p Parts<'_>) -> Vec<(&'static str, &'static str, Cow<'p
 
 fn header(parts: &Parts<'_>) -> String {
     let manipulator = &parts.model.manipulator;
-    let joints = manipulator.dof();
+    let joints = manipulator.joints.len();
+    let coordinates = manipulator.coupling.as_ref().map_or(String::new(), |_| {
+        format!(", {} coordinate{}", manipulator.dof(), if manipulator.dof() == 1 { "" } else { "s" })
+    });
     let rows = match convention(parts.description) {
         Convention::Standard => "standard DH",
         Convention::Modified => "modified DH",
         Convention::Urdf => "rows of a URDF",
     };
     format!(
-        "<header>\n<h1>{}</h1>\n<p>{joints} joint{}, {rows}, {} kg</p>\n<div class=\"controls\">\n\
+        "<header>\n<h1>{}</h1>\n<p>{joints} joint{}{coordinates}, {rows}, {} kg</p>\n<div class=\"controls\">\n\
          <button type=\"button\" id=\"angle-unit\">angles: rad</button>\n\
          <button type=\"button\" id=\"length-unit\">lengths: m</button>\n\
          <button type=\"button\" id=\"theme\">dark theme</button>\n<button type=\"button\" id=\"unfold\" title=\"all that is folded in, but runs; of long equations as many as can be printed\">open all</button>\n<button type=\"button\" id=\"print\">print</button>\n</div>\n<p id=\"unfold-said\" class=\"small\" role=\"status\"></p>\n</header>\n",
@@ -173,11 +179,11 @@ const WORKSPACE: &str = r#"<details id="postures"><summary>Other postures at thi
 <div class="map"><p class="up" id="w-up"></p><canvas id="w-canvas" width="384" height="384" role="img" aria-labelledby="w-said"></canvas><p class="across" id="w-across"></p></div><p id="w-said" class="small"></p></details>
 "#;
 
-fn sliders(rows: &[Row]) -> String {
+fn sliders<'r>(rows: impl Iterator<Item = &'r Row>) -> String {
     let mut text = String::from(
         "<div id=\"sliders\">\n<p class=\"small\">Sliders go to the limits, else to ±π rad or ±1 m; fields take any number, also as −pi/4, which is in rad always, or as 30 deg, when Enter is pressed or the field is left; a list of numbers sets the joints from there on, or all. <i>q̇</i>, <i>q̈</i>: rates and accelerations, per s and s².</p>\n",
     );
-    for (i, row) in rows.iter().enumerate() {
+    for (i, row) in rows.enumerate() {
         let k = i + 1;
         let name = escape(&row.name);
         let unit = if row.revolute { "rad" } else { "m" };

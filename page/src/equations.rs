@@ -134,7 +134,7 @@ fn factors_of(shown: &Shown) -> Value {
 fn first_six(model: &Model) -> Option<Shown> {
     let whole = &model.manipulator;
     let sixth = LinkId(5);
-    if whole.task.len() != 6 || whole.branches() || whole.joints.get(6)?.parent != Some(sixth) {
+    if whole.task.len() != 6 || whole.branches() || whole.coupling.is_some() || whole.joints.get(6)?.parent != Some(sixth) {
         return None;
     }
     let mut shorter = whole.clone();

@@ -26,11 +26,11 @@ mod words;
 
 pub use logs::{Figure, Log, Run, Verdict, SAMPLES};
 
-use armgen_codegen::codes;
 use armgen_codegen::description::{Convention, RobotDescription};
-use armgen_codegen::diagnostic::{Diagnostic, Diagnostics};
+use armgen_codegen::diagnostic::Diagnostics;
 use armgen_codegen::emit::{javascript, Notes, Origin};
-use armgen_codegen::manipulator::Manipulator;
+use armgen_codegen::exact::Number;
+use armgen_codegen::manipulator::{Coordinate, Limits, Manipulator};
 use armgen_codegen::program::{Module, Trig};
 use armgen_codegen::schedule::{Options, Selection};
 use armgen_codegen::source::Source;
@@ -43,6 +43,7 @@ use serde_json::{json, Value};
 const FUNCTIONS: &[&str] = &[
     "direct_kinematics",
     "link_frames",
+    "joint_variables",
     "geometric_jacobian",
     "inertia_matrix",
     "coriolis_matrix",
@@ -58,8 +59,15 @@ const FUNCTIONS: &[&str] = &[
 const OPERATIONS: usize = 6000;
 
 /// Functions that the page keeps at any length.
-const ALWAYS: &[&str] =
-    &["direct_kinematics", "link_frames", "geometric_jacobian", "inertia_matrix", "gravity", "inverse_dynamics"];
+const ALWAYS: &[&str] = &[
+    "direct_kinematics",
+    "link_frames",
+    "joint_variables",
+    "geometric_jacobian",
+    "inertia_matrix",
+    "gravity",
+    "inverse_dynamics",
+];
 
 /// The reason why a valid description has no page: a log does not match it.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -77,8 +85,8 @@ pub struct Misfit {
 /// A log has other joints than the arm.
 pub fn page(source: &Source, runs: &[Run]) -> Result<(Option<String>, Diagnostics), Misfit> {
     let (valid, mut diagnostics) = validate::read_for(source, Scalar::F64);
-    let Some((manipulator, places)) = of_coordinates(valid, &mut diagnostics) else { return Ok((None, diagnostics)) };
-    let joints: Vec<&str> = manipulator.joints.iter().map(|joint| joint.name.as_str()).collect();
+    let Some((manipulator, places)) = valid else { return Ok((None, diagnostics)) };
+    let joints: Vec<&str> = manipulator.coordinates().iter().map(|coordinate| coordinate.joint.name.as_str()).collect();
     for run in runs {
         let fits = run.log.as_ref().map_or(Ok(()), |log| log.fits(&joints));
         fits.map_err(|reason| Misfit { run: run.name.clone(), reason })?;
@@ -95,37 +103,12 @@ pub fn page(source: &Source, runs: &[Run]) -> Result<(Option<String>, Diagnostic
     Ok((Some(page), diagnostics))
 }
 
-codes! {
-    /// Kinds of faults of an arm that has no page.
-    pub enum Code {
-        /// Joints are coupled.
-        CoupledJoints Error "coupled-joints",
-    }
-}
-
-/// The arm, unless joints are coupled: the page has a slider for each joint.
-fn of_coordinates(valid: Option<(Manipulator, Places)>, diagnostics: &mut Diagnostics) -> Option<(Manipulator, Places)> {
-    let (manipulator, places) = valid?;
-    let Some(joint) = manipulator.coupled_joint() else { return Some((manipulator, places)) };
-    let place = manipulator.joints.iter().position(|other| other.name == joint.name).and_then(|i| places.joints.get(i));
-    let message = format!("joint `{}` is coupled with others, and the page does not show coupled joints", joint.name);
-    let help = "leave `follows`, `adds` and `offset` out in a copy of the file, to look at the arm with every joint free";
-    diagnostics.push(Diagnostic::new(
-        Code::CoupledJoints,
-        place.map_or(places.name, |place| place.name),
-        message,
-        "coupled",
-        help,
-    ));
-    None
-}
-
 /// The page in the first of two steps: everything but the equations and the table of costs, which take most of the time.
 /// Its script waits for a message from the window around it, what [`rest`] gives. `nonce` marks its script and its style for the
 /// policy of that window.
 pub fn picture(source: &Source, nonce: &str) -> (Option<String>, Diagnostics) {
     let (valid, mut diagnostics) = validate::read_for(source, Scalar::F64);
-    let Some((manipulator, places)) = of_coordinates(valid, &mut diagnostics) else { return (None, diagnostics) };
+    let Some((manipulator, places)) = valid else { return (None, diagnostics) };
     let model = Model::new(manipulator.with_one_end_effector());
     let functions = Selection::named(FUNCTIONS).expect("names of the catalogue");
     let Some(module) = derived(&model, &places, functions, &mut diagnostics) else { return (None, diagnostics) };
@@ -220,7 +203,7 @@ fn data(
     determinant: &Determinant,
     runs: &[Run],
 ) -> Value {
-    let row = |row: &rows::Row| {
+    let row = |row: &rows::Row, limits: Option<[f64; 2]>| {
         let values = row.denavit_hartenberg.as_ref();
         let mut of_row = json!({
             "name": row.name,
@@ -229,24 +212,27 @@ fn data(
             "before": row.before,
             "axis": row.axis,
             "after": row.after,
-            "limits": row.limits,
+            "limits": limits,
         });
         if let Some((parent, start)) = &row.branch {
             of_row["branch"] = json!({ "parent": parent, "start": start });
         }
         of_row
     };
-    json!({
+    // Sliders are of coordinates, and their limits those of all joints that move with them.
+    let limits = |limits: &Limits| limits.position.as_ref().map(|ends| ends.each_ref().map(Number::to_f64));
+    let of_coordinate = |coordinate: Coordinate<'_>| row(&rows[coordinate.index], limits(coordinate.limits));
+    let mut data = json!({
         "name": manipulator.name,
         "convention": match rows::convention(description) {
             Convention::Standard => "standard",
             Convention::Modified => "modified",
             Convention::Urdf => "urdf",
         },
-        "gravity": module.gravity.each_ref().map(armgen_codegen::exact::Number::to_f64),
+        "gravity": module.gravity.each_ref().map(Number::to_f64),
         "gravityIsArgument": module.gravity_is_argument,
         "base": rows::base(manipulator, description),
-        "rows": rows.iter().map(row).collect::<Vec<_>>(),
+        "rows": manipulator.coordinates().into_iter().map(of_coordinate).collect::<Vec<_>>(),
         "tip": manipulator.tip.0,
         "tool": bodies::tool(manipulator),
         "bodies": bodies,
@@ -256,5 +242,9 @@ fn data(
         "determinant": determinant.factors,
         "firstSix": determinant.first_six,
         "runs": logs::data(runs, rows),
-    })
+    });
+    if manipulator.coupling.is_some() {
+        data["links"] = rows.iter().map(|of| row(of, of.limits)).collect();
+    }
+    data
 }

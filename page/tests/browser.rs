@@ -114,6 +114,33 @@ fn check_frames(place: &str, frames: &Value, values: &[f64]) {
     }
 }
 
+/// Five bars with two coordinates: the picture has all joints, and the cut pin is at one place, which the bars' frames give.
+#[test]
+#[ignore = "wide"]
+fn coupled_joints_are_drawn_and_closed() {
+    let source = Source::new("parallelogram.yaml", include_str!("../../tests/data/trees/parallelogram.yaml"));
+    let Some(mut tab) = opened(&source, 1600, "light") else { return };
+    let result = tab.run(&format!("{MOVE}(1)"));
+    tab.close();
+    let q = numbers(&result["state"][0]);
+    let (lower, crank) = (q[0], q[1]);
+    let expected = [lower, crank, crank - lower, lower - crank];
+    let variables = numbers(&result["quantities"]["joint_variables"]);
+    assert!(variables.iter().zip(expected).all(|(a, b)| (a - b).abs() < 1e-15), "{variables:?}");
+    let frames = result["frames"].as_array().expect("frames");
+    let names: Vec<&str> = frames.iter().map(|frame| frame[0].as_str().expect("a name")).collect();
+    assert_eq!(names, ["0", "1", "2", "3", "4", "e"]);
+    let at = |k: usize| -> Vec<f64> {
+        let text = frames[k][1].as_str().expect("an origin");
+        text.split(' ').map(|x| x.parse().expect("m")).collect()
+    };
+    let near = |found: Vec<f64>, x: f64, y: f64| assert!((found[0] - x).hypot(found[1] - y) < 1e-15, "{found:?}");
+    near(at(3), 0.5 * lower.cos(), 0.5 * lower.sin());
+    near(at(4), -0.2 * crank.cos(), -0.2 * crank.sin());
+    // The rod turns as the lower arm does, the forearm as the crank.
+    near(at(5), 0.5 * lower.cos() + 0.6 * crank.cos(), 0.5 * lower.sin() + 0.6 * crank.sin());
+}
+
 /// An arm without masses shows its frames and its Jacobian, but no dynamics.
 #[test]
 #[ignore = "wide"]

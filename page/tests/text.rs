@@ -106,3 +106,23 @@ fn the_second_step_brings_what_the_first_lacks() {
         assert_eq!(first.matches(" nonce=\"abc\"").count(), 2, "{name}");
     }
 }
+
+/// Sliders are of coordinates, with the limits of their followers; rows of all joints.
+#[test]
+fn a_page_of_coupled_joints_has_a_slider_for_each_coordinate() {
+    let (head, first) = ARM.trim_end().split_once("  - ").expect("a joint");
+    let second = first.replace("name: only", "name: mirror, parent: base, follows: {only: -2}, limits: {position: [-1, 3]}");
+    let page = page("arm.yaml", &format!("{head}  - {second}\n  - {first}\ntip: only\n"));
+    let text = page.split_once("id=\"data\">").and_then(|(_, rest)| rest.split_once("</script>")).expect("data").0;
+    let data: serde_json::Value = serde_json::from_str(text).expect("JSON");
+    let names = |key: &str| -> Vec<&str> {
+        data[key].as_array().expect("rows").iter().map(|row| row["name"].as_str().expect("a name")).collect()
+    };
+    assert_eq!((names("rows"), names("links")), (vec!["only"], vec!["mirror", "only"]));
+    assert_eq!(
+        (&data["rows"][0]["limits"], &data["links"][1]["limits"]),
+        (&serde_json::json!([-1.5, 0.5]), &serde_json::Value::Null)
+    );
+    assert_eq!(page.matches("<input type=\"range\" id=\"q").count(), 1);
+    assert!(!page.contains("id=\"check\"") && page.contains("2 joints, 1 coordinate,"));
+}

@@ -6,7 +6,7 @@
 import { set, svg } from "./dom.mjs";
 import { withUnit } from "./format.mjs";
 import { settle } from "./labels.mjs";
-import { motion, order, PLACES } from "./kinematics.mjs";
+import { links, motion, order, PLACES } from "./kinematics.mjs";
 import { along, column, compose, cross, direct, norm, origin, rotation, subtract } from "./vector.mjs";
 
 const TITLES = { a: "a", alpha: "α", d: "d", theta: "θ" };
@@ -83,7 +83,7 @@ function arc(view, centre, axis, from, angle, radius, content) {
  * @param {import("./labels.mjs").Box[]} taken by other texts
  */
 export function dimensions(view, data, i, start, q, size, taken) {
-    const row = data.rows[i];
+    const row = links(data)[i];
     const radius = 0.09 * size;
     const elements = [];
     if (row.dh) {

@@ -18,6 +18,16 @@ import { compose, rotation, translation } from "./vector.mjs";
 const X = [1, 0, 0];
 const Z = [0, 0, 1];
 
+/** The rows of all joints; `data.rows` are those of the coordinates, fewer where joints are coupled. @param {any} data @returns {Row[]} */
+export function links(data) {
+    return data.links ?? data.rows;
+}
+
+/** The variables of all joints. @param {any} data @param {number[]} q coordinates */
+export function variables(data, q) {
+    return data.links ? robot.jointVariables(q) : q;
+}
+
 /** The order of the motions of a convention. @param {string} convention */
 export function order(convention) {
     return convention === "standard" ? ["theta", "d", "a", "alpha"] : ["alpha", "a", "theta", "d"];

@@ -108,7 +108,8 @@ export function lostMotion(data, state, picture) {
             text = most === 0 ? `Lost: whatever the rates, ${all.map((one) => `${one} = 0`).join(", and ")}.` : `Nearly lost: ${all[0]}, at most ${short(Number(most.toPrecision(3)))} for rates of norm 1.`;
             const tip = origin(robot.directKinematics(state.q));
             lines = of.map((one) => line(VELOCITY.map((_, row) => (data.task.includes(row) ? one[data.task.indexOf(row)] : 0)), tip, most > 0));
-            if (state.singular === 2) why = reason(axes(jacobian, slides, tip), data.task, lines, picture.arm.size, tip);
+            // A column of J is the axis of a joint unless joints are coupled.
+            if (state.singular === 2 && !data.links) why = reason(axes(jacobian, slides, tip), data.task, lines, picture.arm.size, tip);
         }
         write(said, text);
         write(because, why);

@@ -27,7 +27,8 @@ sheet(data, state, picture);
 const shown = numbers(data, state, picture.arm);
 lostMotion(data, state, picture);
 if (data.equations) rest();
-check(data, state, picture);
+// Measured postures are of joints whose mistakes are looked for one by one.
+if (!data.links) check(data, state, picture);
 workspace(data, state, picture);
 postures(data, state, picture);
 logs(data, state, picture);

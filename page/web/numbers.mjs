@@ -6,6 +6,7 @@
 import { byId, copy, html } from "./dom.mjs";
 import { exact, inWords, short, unitOfManipulability, variable } from "./format.mjs";
 import { bound, evaluate, parse, zeros } from "./formula.mjs";
+import { links } from "./kinematics.mjs";
 import { condition, determinant, gram, manipulability, ROUNDING, singular } from "./linear.mjs";
 import { VELOCITY } from "./lost_motion.mjs";
 import { sizes, withoutNoise } from "./noise.mjs";
@@ -84,6 +85,10 @@ function quantities(data, state, arm) {
         { ...vector("roll_pitch_yaw", "roll, pitch, yaw", "Orientation of the end effector: Rz(yaw) Ry(pitch) Rx(roll)", "rad", 3, () => rollPitchYaw(robot.directKinematics(state.q)), ["roll", "pitch", "yaw"]), size: () => 1 },
         { ...matrix("geometric_jacobian", "J", "Geometric Jacobian: velocity v, m/s, and angular velocity ω, rad/s, of the end effector in the base frame for a rate of 1 rad/s, or of 1 m/s", "", 6, n, () => robot.geometricJacobian(state.q)), size: size.jacobian, rowNames: VELOCITY, columnNames: joints },
     ];
+    if (has("joint_variables")) {
+        const names = links(data).map((row) => `${row.name}, ${row.type === "revolute" ? "rad" : "m"}`);
+        list.push(vector("joint_variables", "q", "Variables of all joints, followers included", "", names.length, () => robot.jointVariables(state.q), names));
+    }
     const rows = data.task.map((row) => VELOCITY[row]).join(" ");
     const task = () => data.task.map((row) => robot.geometricJacobian(state.q)[row]);
     if (data.task.length === n) list.push({ ...scalar("det", "det J", `Determinant of the rows ${rows} of J`, unitOfManipulability(data), () => (manipulability(task()) === 0 ? 0 : determinant(task()))), singular: true });

@@ -4,6 +4,7 @@ import { cuboid } from "./bodies.mjs";
 import { dimensions } from "./dimension.mjs";
 import { byId, set, svg } from "./dom.mjs";
 import { exact, short, withUnit } from "./format.mjs";
+import { links, variables } from "./kinematics.mjs";
 import { box, settle } from "./labels.mjs";
 import { Arm, step, unit } from "./scene.mjs";
 import { narrow, StickyPicture } from "./sticky_picture.mjs";
@@ -35,7 +36,7 @@ export class Picture {
         }
         this.arm = new Arm(data);
         this.bodies = data.bodies.map((body) => bodySolids(body, data, this.arm.size)).filter((all) => all !== null);
-        const names = ["0", ...data.rows.map((_, i) => String(i + 1)), "e"];
+        const names = ["0", ...links(data).map((_, i) => String(i + 1)), "e"];
         this.frames = names.map((name) => frameElements(name));
         this.layers.frames.append(...this.frames.map((frame) => frame.element));
         /** Which row is drawn as on a sheet, from 0. @type {number | null} */
@@ -99,10 +100,10 @@ export class Picture {
 
     /** Draws everything. */
     draw() {
-        const { links, end } = this.pose();
-        this.links = links;
+        const { links: frames, end } = this.pose();
+        this.links = frames;
         this.end = end;
-        this.arm.place(this.state.q, links, end);
+        this.arm.place(this.state.q, frames, end);
         // An arm that has become small in its picture is laid into it anew.
         if (!this.zoomed && this.view.scaleFor(this.around()) > 2.5 * this.view.scale) this.seen = [];
         if (this.seen.length === 0 || (!this.zoomed && this.isOutside())) this.fit();
@@ -114,7 +115,7 @@ export class Picture {
 
     /** Draws the same posture again. */
     redraw() {
-        const { view, links, end } = this;
+        const { view, links: frames, end } = this;
         drawSolids(this.layers.links, this.arm.solids, view);
         // An arm that is held against that of the page stands before it, other postures behind it; one that lies on it would only hide it.
         const isBefore = ({ solids }) => solids[0].element.matches(".suspect, .other");
@@ -124,7 +125,7 @@ export class Picture {
         const side = ghosts.some(isBefore) ? "after" : "before";
         if (this.side !== side) this.layers.links[side](this.layers.ghosts);
         this.side = side;
-        this.drawFrames([identity(), ...links, end]);
+        this.drawFrames([identity(), ...frames, end]);
         this.drawBodies();
         this.drawGrid();
         this.drawGravity();
@@ -134,7 +135,7 @@ export class Picture {
 
     /** The frame that row i starts from. @param {number} i */
     start(i) {
-        return i === 0 ? this.data.base : this.links[i - 1];
+        return this.arm.start(i, this.links);
     }
 
     drawFrames(frames) {
@@ -247,7 +248,7 @@ export class Picture {
             return;
         }
         const i = this.row;
-        const elements = dimensions(this.view, this.data, i, this.start(i), this.state.q[i], this.arm.size, this.texts());
+        const elements = dimensions(this.view, this.data, i, this.start(i), variables(this.data, this.state.q)[i], this.arm.size, this.texts());
         this.layers.dimensions.replaceChildren(svg("g", { "data-dimension": i + 1 }, ...elements));
     }
 

@@ -9,13 +9,14 @@
  * Where an arm branches, frame i - 1 is the one that the row starts from.
  */
 
+import { links, variables } from "./kinematics.mjs";
 import { Ball, Box, Cylinder } from "./solids.mjs";
 import { along, column, compose, cross, direct, norm, origin, perpendicular, scale } from "./vector.mjs";
 
 /** How long an arm is, m: the sum of the lengths of its rows and of what its slides can add. @param {any} data */
 export function size(data) {
     let length = 0;
-    for (const row of data.rows) {
+    for (const row of links(data)) {
         for (const frame of [...row.before, ...row.after]) length += norm(origin(frame));
         if (row.type === "prismatic" && row.limits) length += Math.max(...row.limits.map(Math.abs)) / 2;
     }
@@ -27,7 +28,7 @@ export function size(data) {
 
 /** The corners of a row: where it begins, where it bends, where it ends, and its joint's place and axis. @param {any} data @param {number} i @param {number[][]} start @param {number[][]} end @param {number} q */
 function bend(data, i, start, end, q) {
-    const row = data.rows[i];
+    const row = links(data)[i];
     if (data.convention === "urdf") {
         const before = row.before.reduce(compose, start);
         const at = origin(before);
@@ -52,7 +53,7 @@ export class Arm {
         this.size = size(data);
         const [link, joint] = [this.size * 0.016, this.size * 0.028];
         this.half = this.size * 0.045;
-        this.rows = data.rows.map((row) => {
+        this.rows = links(data).map((row) => {
             const prismatic = row.type === "prismatic";
             return {
                 prismatic,
@@ -75,14 +76,15 @@ export class Arm {
 
     /** The frame that a row starts from: where arms branch, in that of its parent. @param {number} i @param {number[][][]} frames */
     start(i, frames) {
-        const branch = this.data.rows[i].branch;
+        const { branch } = links(this.data)[i];
         if (branch) return branch.parent === null ? branch.start : compose(frames[branch.parent], branch.start);
         return i === 0 ? this.data.base : frames[i - 1];
     }
 
-    /** @param {number[]} q @param {number[][][]} frames those of the links, from 1 @param {number[][]} end that of the end effector */
-    place(q, frames, end) {
+    /** @param {number[]} coordinates @param {number[][][]} frames those of the links, from 1 @param {number[][]} end that of the end effector */
+    place(coordinates, frames, end) {
         const { data } = this;
+        const q = variables(data, coordinates);
         this.points = [];
         const up = column(data.base, 2);
         this.base.between(along(origin(data.base), -0.03 * this.size, up), origin(data.base));
@@ -98,7 +100,7 @@ export class Arm {
                 const third = cross(axis, side);
                 const carrier = moved === 0 ? points[1] : points[2];
                 const rest = along(carrier, -q[i], axis);
-                const [low, high] = data.rows[i].limits ?? [Math.min(0, q[i]), Math.max(0, q[i])];
+                const [low, high] = links(data)[i].limits ?? [Math.min(0, q[i]), Math.max(0, q[i])];
                 const middle = along(rest, (low + high) / 2, axis);
                 const frame = (at) => [0, 1, 2].map((k) => [side[k], third[k], axis[k], at[k]]);
                 row.rail.place(frame(middle), [this.half * 0.18, this.half * 0.18, (high - low) / 2 + this.half * 0.5]);

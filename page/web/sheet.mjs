@@ -3,6 +3,7 @@
 import { cuboid } from "./bodies.mjs";
 import { byId, html } from "./dom.mjs";
 import { short, tidy, units, withUnit } from "./format.mjs";
+import { links } from "./kinematics.mjs";
 
 /** @param {any} data @param {import("./state.mjs").State} state @param {import("./picture.mjs").Picture} picture */
 export function sheet(data, state, picture) {
@@ -43,7 +44,7 @@ export function sheet(data, state, picture) {
 
 /** Origins and axes of all frames at the posture of the sliders, and at q = 0. @param {any} data @param {import("./state.mjs").State} state */
 function frameTable(data, state) {
-    const names = ["0", ...data.rows.map((_, i) => String(i + 1)), "e"];
+    const names = ["0", ...links(data).map((_, i) => String(i + 1)), "e"];
     const make = (when) => {
         const origin = html("th", { scope: "col" });
         const head = html("tr", {}, html("th", { scope: "col" }, "frame"), origin, ...["x axis", "y axis", "z axis"].map((axis) => html("th", { scope: "col" }, axis)));

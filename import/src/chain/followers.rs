@@ -10,10 +10,11 @@ use std::collections::{BTreeMap, BTreeSet};
 use armgen_codegen::exact::Number;
 use armgen_codegen::source::Span;
 
-use super::locks::{Lock, Locks};
+use super::locks::{report_ring, report_unknown, Lock, Locks};
 use super::Row;
 use crate::format::{Format, Motion};
 use crate::number::Decimal;
+use crate::pose::factor;
 use crate::tree::{Kind, Tree};
 use crate::values::Values;
 use crate::xml::shown;
@@ -31,6 +32,15 @@ pub(crate) struct Follows {
     pub(crate) factor: Decimal,
     pub(crate) offset: Decimal,
     pub(crate) span: Span,
+}
+
+impl Follows {
+    /// The variable of the joint as a formula.
+    pub(crate) fn formula(&self, leader: &str) -> String {
+        let by = if self.factor.text == "1" { String::new() } else { format!("{} ", self.factor.text) };
+        let offset = if self.offset.is_zero() { String::new() } else { format!(" + {}", factor(&self.offset.text)) };
+        format!("{by}`{leader}`{offset}")
+    }
 }
 
 /// The followers among the joints of an arm.
@@ -162,27 +172,6 @@ fn movable(
         return None;
     }
     Some(found)
-}
-
-/// Reports joints that follow each other: those on a way from the joint that is met again.
-pub(super) fn report_ring(tree: &Tree, way: &[usize], again: usize, span: Span, values: &mut Values<'_>) {
-    let ring = way.iter().skip_while(|joint| **joint != again);
-    let names: Vec<String> = ring.take(8).map(|&joint| format!("`{}`", shown(&tree.joints[joint].name))).collect();
-    let message = match &names[..] {
-        [only] => format!("the joint {only} follows itself"),
-        names => format!("joints follow each other in a ring: {}", names.join(", ")),
-    };
-    let which = if names.len() == 1 { "it" } else { "one of them" };
-    let help = format!("lock {which} where it is to stand: `--lock {}=0`", shown(&tree.joints[again].name));
-    values.report(Code::Mimic, span, message, "", help);
-}
-
-/// Reports a joint whose leader does not exist.
-pub(super) fn report_unknown(tree: &Tree, follower: usize, leader: &str, span: Span, values: &mut Values<'_>) {
-    let message = format!("`mimic` names `{}`, which is no joint of this file", shown(leader));
-    let (meant, name) = (tree.meant_joint(leader), shown(&tree.joints[follower].name));
-    let help = format!("{meant}; or lock it where it is to stand: `--lock {name}=0`");
-    values.report(Code::UnknownJoint, span, message, "", help);
 }
 
 /// A joint's variable by that of a joint with a coordinate.

@@ -8,7 +8,6 @@ use armgen_codegen::document::parse_expression;
 use armgen_codegen::document::yaml::Scalar;
 use armgen_codegen::source::Span;
 
-use super::followers::{report_ring, report_unknown};
 use super::Builder;
 use crate::format::Format;
 use crate::number::Decimal;
@@ -121,6 +120,11 @@ impl Locks {
         self.followers.get(&joint).map_or(&[], Vec::as_slice)
     }
 
+    /// All joints that follow others.
+    pub(super) fn all_followers(&self) -> BTreeSet<usize> {
+        self.followers.values().flatten().copied().collect()
+    }
+
     /// Whether a joint stands still because its multiplier is 0.
     pub(super) fn rests(&self, joint: usize) -> bool {
         self.resting.contains(&joint)
@@ -191,6 +195,27 @@ impl Builder<'_> {
             }
         }
     }
+}
+
+/// Reports joints that follow each other: those on a way from the joint that is met again.
+pub(super) fn report_ring(tree: &Tree, way: &[usize], again: usize, span: Span, values: &mut Values<'_>) {
+    let ring = way.iter().skip_while(|joint| **joint != again);
+    let names: Vec<String> = ring.take(8).map(|&joint| format!("`{}`", shown(&tree.joints[joint].name))).collect();
+    let message = match &names[..] {
+        [only] => format!("the joint {only} follows itself"),
+        names => format!("joints follow each other in a ring: {}", names.join(", ")),
+    };
+    let which = if names.len() == 1 { "it" } else { "one of them" };
+    let help = format!("lock {which} where it is to stand: `--lock {}=0`", shown(&tree.joints[again].name));
+    values.report(Code::Mimic, span, message, "", help);
+}
+
+/// Reports a joint whose leader does not exist.
+pub(super) fn report_unknown(tree: &Tree, follower: usize, leader: &str, span: Span, values: &mut Values<'_>) {
+    let message = format!("`mimic` names `{}`, which is no joint of this file", shown(leader));
+    let (meant, name) = (tree.meant_joint(leader), shown(&tree.joints[follower].name));
+    let help = format!("{meant}; or lock it where it is to stand: `--lock {name}=0`");
+    values.report(Code::UnknownJoint, span, message, "", help);
 }
 
 /// Where a joint stands whose leader stands; faults are reported.

@@ -98,9 +98,18 @@ pub(super) fn only(tree: &Tree, base: usize, locks: &Locks, diagnostics: &mut Di
     Some((tip, notes))
 }
 
-/// All leaves that a joint moves, those that differ by fixed joints alone once, in the order of the file; with notes. Of more than have names
-/// those with the most joints.
-pub(super) fn all(tree: &Tree, base: usize, locks: &Locks, diagnostics: &mut Diagnostics) -> Option<(Vec<usize>, Vec<String>)> {
+/// The ends of all branches.
+pub(super) struct Ends {
+    /// Links that carry an end effector.
+    pub(super) tips: Vec<usize>,
+    /// Further links, which joints move that follow others.
+    pub(super) others: Vec<usize>,
+    pub(super) notes: Vec<String>,
+}
+
+/// All leaves that a joint moves, those that differ by fixed joints alone once, in the order of the file. Where they are too many, those on
+/// joints that follow others have no end effector.
+pub(super) fn all(tree: &Tree, base: usize, locks: &Locks, diagnostics: &mut Diagnostics) -> Option<Ends> {
     let groups = leaves(tree, base, locks);
     let best = |leaves: &Vec<Candidate>| {
         let rank = |leaf: &&Candidate| names::tool(&tree.links[leaf.link].name).unwrap_or(usize::MAX);
@@ -121,7 +130,19 @@ pub(super) fn all(tree: &Tree, base: usize, locks: &Locks, diagnostics: &mut Dia
         diagnostics.push(Diagnostic::new(Code::NoJoints, tree.links[base].span, message, "", help));
         return None;
     }
-    let mut notes = Vec::new();
+    let named = |ends: &[Candidate]| {
+        let names = ends.iter().map(|end| format!("`{}` ({})", shown(&tree.links[end.link].name), number(end.joints)));
+        names.collect::<Vec<_>>().join(", ")
+    };
+    let (mut notes, mut others) = (Vec::new(), Vec::new());
+    if ends.len() > MAX_TIPS {
+        let followers = locks.all_followers();
+        let (led, own): (Vec<Candidate>, Vec<Candidate>) = ends.iter().partition(|end| followers.contains(&end.last));
+        if !led.is_empty() && (1..=MAX_TIPS).contains(&own.len()) {
+            notes.push(format!("without an end effector, since the last joint follows another one: {}", named(&led)));
+            (ends, others) = (own, led);
+        }
+    }
     if let Some(more) = ends.len().checked_sub(MAX_TIPS).filter(|more| *more > 0) {
         let message = format!(
             "{} branches end with a link that moves, more than the {MAX_TIPS} end effectors that a robot has",
@@ -132,10 +153,9 @@ pub(super) fn all(tree: &Tree, base: usize, locks: &Locks, diagnostics: &mut Dia
         return None;
     }
     ends.sort_by_key(|end| end.last);
-    let named: Vec<String> =
-        ends.iter().map(|end| format!("`{}` ({})", shown(&tree.links[end.link].name), number(end.joints))).collect();
-    notes.push(format!("end effectors: {}", named.join(", ")));
-    Some((ends.into_iter().map(|end| end.link).collect(), notes))
+    notes.insert(0, format!("end effectors: {}", named(&ends)));
+    let links = |ends: Vec<Candidate>| ends.into_iter().map(|end| end.link).collect();
+    Some(Ends { tips: links(ends), others: links(others), notes })
 }
 
 /// Whether a joint is above another one.
@@ -227,6 +247,9 @@ fn several(tree: &Tree, base: usize, locks: &Locks, groups: &BTreeMap<usize, Vec
     if let Some((link, joints)) = branch.filter(|&(link, _)| link != first) {
         let (tip, joints) = (shown(&tree.links[link].name), number(joints));
         help = format!("{help}; or end the arm where it branches, say before the fingers: `--tip {tip}` ({joints})");
+    }
+    if groups.len() <= MAX_TIPS {
+        help = format!("{help}; or take all branches: `--all`");
     }
     let mut fault = Diagnostic::new(Code::SeveralTips, tree.links[first].span, message, "may be the tip", help);
     for (chain, _) in chains.iter().filter(|(chain, _)| chain.link != first).take(3) {
