@@ -233,7 +233,8 @@ in_both_scalars! {
                 let tally = tally(50 + seed as u64, prismatic, make, |l| two_slides(l, slides, 0.5));
                 assert_eq!((tally.lost, tally.odd), (0, 0));
                 assert!(tally.most >= 4 && tally.most <= 8);
-                assert!(tally.worst < if SINGLE { 1e-3 } else { 1e-12 });
+                // Slides that go far leave as many times the rounding of their lengths.
+                assert!(tally.worst < if SINGLE { 1e-3 } else { 1e-11 });
                 assert!(tally.doubtful <= if SINGLE { 250 } else { 5 });
             }
         }

@@ -119,7 +119,8 @@ in_both_scalars! {
         for _ in 0..100 {
             let t = arm.at(&arm.posture(random));
             let (_, result) = solve(&arm, &t, 4, false);
-            assert!(!result.complete);
+            // Single precision sees two neighbouring roots in place of each, which share two members each.
+            assert!(!result.complete || result.found.count == 8, "{} of {} roots, noise {}", result.found.count, result.roots, result.noise);
             both += usize::from(result.found.count >= 4);
         }
         assert!(both >= if SINGLE { 20 } else { 98 }, "{both}");

@@ -94,18 +94,48 @@ in_both_scalars! {
                 }
             }
         }
-        assert!(doubtful * if SINGLE { 3 } else { 50 } <= regular, "{doubtful} of {regular} random poses are doubtful");
+        assert!(doubtful * if SINGLE { 3 } else { 100 } <= regular, "{doubtful} of {regular} random poses are doubtful");
     }
 
-    /// The geometry of a Jaco, with a wrist of 60 degrees. Where joints 2, 3 and 5 are at 0 or pi several regular postures nearly share a root of the
+    /// The rows of a Jaco, with a wrist of 60 degrees.
+    const JACO: [(f64, f64, f64, f64); 6] = [
+        (0.0, 0.2755, 0.0, RIGHT),
+        (0.0, 0.0, 0.41, 2.0 * RIGHT),
+        (0.0, -0.0098, 0.0, RIGHT),
+        (0.0, -0.2502, 0.0, RIGHT / 1.5),
+        (0.0, -0.0858, 0.0, RIGHT / 1.5),
+        (0.0, -0.2116, 0.0, 2.0 * RIGHT),
+    ];
+
+    /// The small offset of joint 3 brings the postures in pairs, whose roots are 1e-3 to 5e-2 rad apart: single precision takes two for one. Both
+    /// come of that one, and the verdict is `Complete`.
+    #[test]
+    fn a_root_that_stands_for_two_gives_both() {
+        let arm = Arm::standard(&JACO, &[]);
+        let ways = general_ways(&arm, 8);
+        let random = &mut Random(4);
+        let mut doubtful = 0;
+        for _ in 0..300 {
+            let q = arm.posture(random);
+            let found = general_arm(&ways, &arm.at(&q), arm.length());
+            let sure = !found.near && !found.continuum && found.found().iter().all(|branch| !branch.double);
+            doubtful += usize::from(!sure);
+            assert!(!sure || found.count % 2 == 0, "{q:?}");
+            let values: Vec<_> = q.iter().enumerate().map(|(i, q)| arm.value(i, *q)).collect();
+            let near = if SINGLE { 5e-2 } else { 1e-5 };
+            assert!(!sure || found.found().iter().any(|other| apart(&other.joints, &values) < near), "{q:?}: lost");
+        }
+        assert!(doubtful <= if SINGLE { 30 } else { 1 }, "{doubtful} of 300");
+    }
+
+    /// Where joints 2, 3 and 5 of a Jaco are at 0 or pi several regular postures nearly share a root of the
     /// determinant, in both arrangements: rounding hides them.
     #[test]
     fn postures_that_share_a_root_are_not_lost() {
         if SINGLE {
             return;
         }
-        let rows = [(0.0, 0.2755, 0.0, RIGHT), (0.0, 0.0, 0.41, 2.0 * RIGHT), (0.0, -0.0098, 0.0, RIGHT), (0.0, -0.2502, 0.0, RIGHT / 1.5), (0.0, -0.0858, 0.0, RIGHT / 1.5), (0.0, -0.2116, 0.0, 2.0 * RIGHT)];
-        let arm = Arm::standard(&rows, &[]);
+        let arm = Arm::standard(&JACO, &[]);
         let ways = general_ways(&arm, 8);
         let random = &mut Random(3);
         let mut lost = 0;

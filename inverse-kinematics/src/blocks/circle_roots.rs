@@ -28,6 +28,8 @@ pub struct CircleRoots<const M: usize> {
     pub all: [CircleRoot; M],
     /// Some root is `double`, or the bounds on work or room ended the search: there may be two roots fewer or more.
     pub near: bool,
+    /// The same whatever becomes of the `double` ones: the bounds on work or room ended the search, or the others are odd in number.
+    pub ended: bool,
     /// The polynomial vanishes: all amplitudes are within the noise. No root is given.
     pub free: bool,
     /// Minima of |f| that are not roots, but nearly: as flat as between two roots 2 [`SHALLOW`] apart. Rounding of what f
@@ -278,7 +280,7 @@ impl<const M: usize> CircleRoots<M> {
             }
             self.count += 1;
         } else {
-            self.near = true;
+            (self.near, self.ended) = (true, true);
         }
     }
 }
@@ -310,7 +312,7 @@ impl<const M: usize> CircleRoots<M> {
                     *slot = root;
                     self.shallow_count += 1;
                 } else {
-                    self.near = true;
+                    (self.near, self.ended) = (true, true);
                 }
             }
         }
@@ -362,6 +364,7 @@ pub fn circle_roots<const N: usize, const M: usize>(
         count: 0,
         all: [root; M],
         near: false,
+        ended: false,
         free: false,
         shallow: [root; 4],
         shallow_count: 0,
@@ -373,7 +376,7 @@ pub fn circle_roots<const N: usize, const M: usize>(
         amplitude += a.abs() + if k == 0 { 0.0 } else { b.abs() };
     }
     if !(amplitude < Real::MAX) || N < 2 {
-        found.near = true;
+        (found.near, found.ended) = (true, true);
         return found;
     }
     // N operations' rounding, for a value near the largest.
@@ -476,7 +479,9 @@ pub fn circle_roots<const N: usize, const M: usize>(
     }
     found.drop_shallow_beside_roots();
     // They are even in number, each double one counted twice.
-    found.near |= found.count % 2 == 1;
+    let single = found.all.iter().take(found.count).filter(|root| !root.double).count();
+    found.ended |= single % 2 == 1 || halvings == 0;
+    found.near |= found.ended;
     found
 }
 

@@ -5,6 +5,10 @@
 /// Six frames in a row come to about 50 u.
 pub const CLOSED: Real = 1024.0 * UNIT_ROUNDOFF;
 
+/// The same where solutions meet, and in any case at the end of slides that go far: 7e-12 in double precision. In single precision the root of
+/// rounding bounds it.
+const CLOSED_AT_MOST: Real = if UNIT_ROUNDOFF < 1e-10 { 64.0 } else { 32.0 } * CLOSED;
+
 /// How far a loop may stay open that is not closed once more where solutions meet: next to what six frames come to.
 const NEXT_TO_ROUNDING: Real = 0.125 * CLOSED;
 
@@ -26,7 +30,8 @@ pub struct Loop<'a, const N: usize> {
 pub struct Closed<const N: usize> {
     /// The joints' values.
     pub joints: [[Real; 2]; N],
-    /// The largest component of displacement and turn (times the length) by which the equations are missed.
+    /// The largest component of displacement and turn (times the length) by which the equations are missed; the displacement of an arm with slides
+    /// in units of its reach.
     pub residual: Real,
     /// They are met at a place where their Jacobian is so nearly singular that rounding of the pose decides between two solutions and none.
     pub double: bool,
@@ -54,6 +59,9 @@ impl<const N: usize> Loop<'_, N> {
         for k in 0..3 {
             of.right[k] = self.target[k] - t[k];
             residual = residual.max(of.right[k].abs());
+        }
+        if self.slides_far() {
+            residual /= self.extended(joints);
         }
         if N > 3 {
             let turn = turn_vector_of(&chain);
@@ -168,6 +176,22 @@ impl<const N: usize> Loop<'_, N> {
         N > 3 && self.prismatic.iter().any(|slides| *slides)
     }
 
+    /// How far the arm reaches with its slides, in units of its length: displacements are right to so many roundings, and a turn moves the end
+    /// effector by as much.
+    fn extended(&self, joints: &[[Real; 2]; N]) -> Real {
+        let mut furthest: Real = 0.0;
+        for (value, prismatic) in joints.iter().zip(self.prismatic) {
+            furthest = furthest.max(if prismatic { value[0].abs() } else { 0.0 });
+        }
+        1.0 + furthest / self.length
+    }
+
+    /// Whether the loop is closed there: to some roundings of its reach, and where solutions meet (`contact`) to the root of rounding.
+    fn is_closed(&self, closed: &Closed<N>, contact: bool) -> bool {
+        let reach = if self.slides_far() { self.extended(&closed.joints) } else { 1.0 };
+        (contact || closed.residual <= CLOSED * self.length) && closed.residual * reach <= CLOSED_AT_MOST * self.length
+    }
+
     /// The least residual that damped steps (Levenberg, Marquardt) reach from `joints` in 30 of them: how far a pose out of reach is. `damping`, of
     /// the squared length, is divided by 4 by each that succeeds. `double`: the Jacobian is singular there, to the root of a larger rounding,
     /// since such a place is found to the root of its residual only.
@@ -208,7 +232,7 @@ pub fn polish<const J: usize, const N: usize>(found: &mut Branches<J, N>, closin
         let mut branch = *branch;
         if branch.free == 0 {
             let closed = closing.close(&branch.joints, branch.double);
-            if closed.residual > if branch.double { 64.0 } else { 1.0 } * CLOSED * closing.length {
+            if !closing.is_closed(&closed, branch.double) {
                 kept.near = true;
                 continue;
             }
@@ -447,7 +471,7 @@ fn moved_by(x: Real) -> Frame {
 /// What Newton's method finds from a solution of a loop beside, or damped steps where the place is singular.
 fn close_from_beside(closing: &Loop<6>, joints: &[[Real; 2]; 6]) -> Closed<6> {
     let closed = closing.close(joints, false);
-    if closed.residual <= CLOSED * closing.length {
+    if closing.is_closed(&closed, false) {
         closed
     } else {
         closing.nearest(joints, UNIT_ROUNDOFF)

@@ -59,9 +59,9 @@ impl Search<'_> {
     }
 
     /// q3 at a point of the circle, and the kernel of M there.
-    fn kernel_at(&self, point: [Real; 2]) -> ([Real; 2], [[Real; 6]; 2], usize) {
+    fn kernel_at(&self, point: [Real; 2], pair: bool) -> ([Real; 2], [[Real; 6]; 2], usize) {
         let (q3, _) = self.spread.at(point);
-        let (vectors, count) = kernel(&reduced(&self.eliminants.at(&[q3])).0);
+        let (vectors, count) = kernel(&reduced(&self.eliminants.at(&[q3])).0, pair);
         (q3, vectors, count)
     }
 
@@ -70,29 +70,65 @@ impl Search<'_> {
         self.eliminants.joints(self.closing.links, &self.closing.prismatic, 1.0, q3, vector)
     }
 
-    /// Adds the solutions at the roots. Returns how many of them are new or none of the arm.
-    fn solve(&self, roots: &CircleRoots<20>, found: &mut Branches<6, 16>) -> usize {
-        let mut told = 0;
+    /// Adds the solutions at the roots. Returns whether as many of them are new as there are roots, one that stands for two counted twice. Roots that
+    /// are none of the arm are believed only where none stands for two.
+    fn solve(&self, roots: &CircleRoots<20>, found: &mut Branches<6, 16>) -> bool {
+        let (mut wanted, mut none, mut settled) = (0, 0, true);
+        let (mut told, mut pairs) = (0, 0);
         for root in roots.all.iter().take(roots.count) {
-            let (q3, mut vectors, mut count) = self.kernel_at([root.c, root.s]);
-            if count == 2 {
-                (vectors, count) = products_in_pencil(&vectors);
+            let before = found.count;
+            if root.double && self.solve_pair(root, found) {
+                wanted += 2;
+                pairs += 1;
+            } else {
+                settled &= !root.double;
+                wanted += 1;
+                none += self.solve_root(root, found);
             }
-            for vector in vectors.iter().take(count) {
-                let (joints, unmet) = self.joints(q3, vector);
-                if unmet > UNMET {
-                    told += 1;
-                    continue;
-                }
-                let closed = self.closing.close(&joints, root.double);
-                if closed.residual <= if root.double { 64.0 * CLOSED } else { CLOSED } {
-                    let before = found.count;
-                    merge(found, &self.closing, &closed, closed.residual > CLOSED);
-                    told += found.count - before;
-                }
+            told += found.count - before;
+        }
+        settled && told + none == wanted && (none == 0 || pairs == 0)
+    }
+
+    /// Adds the two solutions that share a root, if there are two.
+    fn solve_pair(&self, root: &CircleRoot, found: &mut Branches<6, 16>) -> bool {
+        let (q3, vectors, kernels) = self.kernel_at([root.c, root.s], true);
+        let (vectors, count) = products_in_pencil(&vectors);
+        // With less than full rank each may stand for two itself.
+        if kernels < 2 || count < 2 || self.eliminants.rank < 8 {
+            return false;
+        }
+        let [one, other, ..] = vectors;
+        let one = self.closing.close(&self.joints(q3, &one).0, false);
+        let other = self.closing.close(&self.joints(q3, &other).0, false);
+        let both = self.closing.is_closed(&one, false) && self.closing.is_closed(&other, false) && !one.double && !other.double;
+        if both && apart(&one.joints, &other.joints, &self.closing.prismatic, 1.0) > 64.0 * SAME * sqrt(UNIT_ROUNDOFF) {
+            merge(found, &self.closing, &one, false);
+            merge(found, &self.closing, &other, false);
+            return true;
+        }
+        false
+    }
+
+    /// Adds the solution at a root, or those that share it. Returns how many of them are none of the arm.
+    fn solve_root(&self, root: &CircleRoot, found: &mut Branches<6, 16>) -> usize {
+        let mut none = 0;
+        let (q3, mut vectors, mut count) = self.kernel_at([root.c, root.s], false);
+        if count == 2 {
+            (vectors, count) = products_in_pencil(&vectors);
+        }
+        for vector in vectors.iter().take(count) {
+            let (joints, unmet) = self.joints(q3, vector);
+            if unmet > UNMET {
+                none += 1;
+                continue;
+            }
+            let closed = self.closing.close(&joints, root.double);
+            if self.closing.is_closed(&closed, root.double) {
+                merge(found, &self.closing, &closed, closed.residual > CLOSED);
             }
         }
-        told
+        none
     }
 
     /// Adds a double solution at each minimum that is nearly a root, if there is one: as near as rounding of the pose, it may have been at this
@@ -100,7 +136,7 @@ impl Search<'_> {
     fn solve_shallow(&self, roots: &CircleRoots<20>, found: &mut Branches<6, 16>) -> bool {
         let mut all = true;
         for place in roots.shallow.iter().take(roots.shallow_count) {
-            let (q3, vectors, _) = self.kernel_at([place.c, place.s]);
+            let (q3, vectors, _) = self.kernel_at([place.c, place.s], false);
             let closed = self.closing.nearest(&self.joints(q3, &vectors[0]).0, UNIT_ROUNDOFF);
             // The search may have gone to another posture nearby.
             let met = closed.residual <= 2.0 * ROUNDING && closed.double;
@@ -120,7 +156,7 @@ impl Search<'_> {
                 (place, least) = (j, sample.abs());
             }
         }
-        let (q3, vectors, _) = self.kernel_at([cosine_of_15_degrees(place), cosine_of_15_degrees(place + 18)]);
+        let (q3, vectors, _) = self.kernel_at([cosine_of_15_degrees(place), cosine_of_15_degrees(place + 18)], false);
         self.closing.nearest(&self.joints(q3, &vectors[0]).0, 1e-2).residual
     }
 }
@@ -170,8 +206,8 @@ pub fn determinant_on_circle(links: &[Frame; 6], prismatic: [bool; 6], length: R
     }
     let told = search.solve(&roots, &mut result.found);
     let shallow_met = search.solve_shallow(&roots, &mut result.found);
-    result.complete = noise <= MOST_NOISE && told == roots.count && !roots.near && shallow_met;
-    result.found.near = roots.near;
+    result.complete = noise <= MOST_NOISE && told && !roots.ended && shallow_met;
+    result.found.near = !result.complete;
     if result.found.count == 0 {
         result.found.missed(search.least_residual(&samples));
     }

@@ -303,7 +303,7 @@ fn determinants<const L: usize>(e: &[[[Real; L]; 9]; 6]) -> [Real; L] {
 
 /// The kernel of a nearly singular 6 x 6 matrix by complete pivoting: one vector, or two where the last two pivots are small. Columns are
 /// monomials x4^(1 + i) x5^j at 3 i + j.
-fn kernel(m: &[[[Real; 1]; 6]; 6]) -> ([[Real; 6]; 2], usize) {
+fn kernel(m: &[[[Real; 1]; 6]; 6], pair: bool) -> ([[Real; 6]; 2], usize) {
     let mut flat = [[0.0; 6]; 6];
     for (flat, row) in flat.iter_mut().zip(m) {
         for (flat, [x]) in flat.iter_mut().zip(row) {
@@ -342,7 +342,8 @@ fn kernel(m: &[[[Real; 1]; 6]; 6]) -> ([[Real; 6]; 2], usize) {
         }
     }
     // Two solutions nearly share q3 where the last but one pivot is small as well.
-    let pair = !(pivots[4] > SHARED * pivots[0]);
+    // More than two where the one before is, and then no two are told apart.
+    let pair = if pair { pivots[3] > CROWDED * pivots[0] } else { !(pivots[4] > SHARED * pivots[0]) };
     let mut vectors = [[0.0; 6]; 2];
     let count = if pair { 2 } else { 1 };
     for (n, vector) in vectors.iter_mut().enumerate().take(count) {
@@ -371,6 +372,9 @@ fn kernel(m: &[[[Real; 1]; 6]; 6]) -> ([[Real; 6]; 2], usize) {
 
 /// Below this ratio of the last but one pivot to the first a kernel counts as two-dimensional.
 const SHARED: Real = 1e-5;
+
+/// The same of the pivot before at a root that stands for two.
+const CROWDED: Real = if UNIT_ROUNDOFF < 1e-10 { 1e-5 } else { 1e-2 };
 
 /// The members of the pencil alpha v + beta w that are products (x4, x4²) ⊗ (1, x5, x5²): the 2 x 2 minor with the largest coefficients
 /// vanishes. None if its roots are not real.

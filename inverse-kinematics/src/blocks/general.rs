@@ -28,7 +28,7 @@ pub fn general_arm(arrangements: &[Arrangement<6>; 2], t: &Frame, length: Real) 
     let quiet = one.noise <= MOST_NOISE && other.noise <= MOST_NOISE;
     let agreed = quiet && one.found.count == found.count && other.found.count == found.count && single % 2 == 0;
     let settled = one.complete || other.complete && other.found.count == found.count || agreed && !one.free && !other.free;
-    found.near = !settled || found.miss <= 64.0 * CLOSED * length;
+    found.near = !settled || found.miss <= CLOSED_AT_MOST * length;
     add_from_beside(&mut found, first, t, length, !quiet);
     found
 }
@@ -51,7 +51,7 @@ fn add_from_beside(found: &mut Branches<6, 16>, way: &Arrangement<6>, t: &Frame,
         let beside = determinant_on_circle(&way.links_at(&compose(t, &moved)), way.prismatic, length);
         for branch in beside.found.found() {
             let closed = close_from_beside(&closing, &branch.joints);
-            if closed.residual <= CLOSED * length {
+            if closing.is_closed(&closed, false) {
                 let known = found.count;
                 let mut other = *branch;
                 (other.joints, other.double) = (closed.joints, closed.double);

@@ -227,9 +227,9 @@ pub fn two_slides(links: &[Frame; 6], slides: [usize; 2], length: Real) -> Branc
     for (i, kind) in prismatic.iter_mut().enumerate() {
         *kind = slides.contains(&i);
     }
-    let mut found = slides_at(&unit, slides, &prismatic);
+    let (mut found, settled) = slides_at(&unit, slides, &prismatic);
     if found.near || found.count == 0 && !found.continuum {
-        slides_from_beside(&mut found, &unit, slides, &prismatic);
+        slides_from_beside(&mut found, settled, &unit, slides, &prismatic);
     }
     for branch in &mut found.all {
         for (value, prismatic) in branch.joints.iter_mut().zip(prismatic) {
@@ -242,30 +242,39 @@ pub fn two_slides(links: &[Frame; 6], slides: [usize; 2], length: Real) -> Branc
     found
 }
 
-/// Adds what closes the loop from the solutions of two loops beside it. Where t1 and t3 turn about one axis the product has a double root,
-/// whatever t1 is, though the postures there are regular: beside it each has a root of its own.
+/// Adds what closes the loop from the solutions of loops beside it. Where t1 and t3 turn about one axis the product has a double root,
+/// whatever t1 is, though the postures there are regular: beside it each has a root of its own. All else `settled`, a loop beside that is certain
+/// and has as many settles that, too.
 #[cold]
 #[inline(never)]
-fn slides_from_beside(found: &mut Branches<6, 8>, unit: &[Frame; 6], slides: [usize; 2], prismatic: &[bool; 6]) {
+fn slides_from_beside(found: &mut Branches<6, 8>, settled: bool, unit: &[Frame; 6], slides: [usize; 2], prismatic: &[bool; 6]) {
     let closing = Loop { links: unit, prismatic: *prismatic, target: [0.0; 3], length: 1.0 };
-    for by in [BESIDE, FURTHER_BESIDE] {
+    let before = found.count;
+    let mut confirmed = false;
+    for by in [BESIDE, FURTHER_BESIDE, BESIDE_CROWD] {
+        if by.abs() > FURTHER_BESIDE.abs() && (confirmed || !settled) {
+            continue;
+        }
         let mut beside = *unit;
         // Not between the three turns, nor beside a joint that both slides are at right angles to.
         let place = if slides[1] == 5 && slides[0] == 1 { 4 } else { 5 };
         beside[place] = compose(&beside[place], &moved_by(by));
-        for branch in slides_at(&beside, slides, prismatic).found() {
+        let (others, _) = slides_at(&beside, slides, prismatic);
+        confirmed |= !others.near && others.count == before && before > 0;
+        for branch in others.found() {
             let closed = close_from_beside(&closing, &branch.joints);
-            if closed.residual <= CLOSED {
+            if closing.is_closed(&closed, false) {
                 let known = found.count;
                 merge(found, &closing, &closed, false);
                 found.near |= found.count > known;
             }
         }
     }
+    found.near &= !(settled && confirmed && found.count == before);
 }
 
 /// Two slides in units of the arm's length.
-fn slides_at(unit: &[Frame; 6], slides: [usize; 2], prismatic: &[bool; 6]) -> Branches<6, 8> {
+fn slides_at(unit: &[Frame; 6], slides: [usize; 2], prismatic: &[bool; 6]) -> (Branches<6, 8>, bool) {
     let mut found = Branches::new();
     let arm = TwoSlides::new(unit, slides);
     let mut samples = [0.0; 12];
@@ -278,7 +287,7 @@ fn slides_at(unit: &[Frame; 6], slides: [usize; 2], prismatic: &[bool; 6]) -> Br
     if !(largest > UNIT_ROUNDOFF * UNIT_ROUNDOFF) {
         found.continuum = largest <= UNIT_ROUNDOFF;
         found.near = !found.continuum;
-        return found;
+        return (found, false);
     }
     let (a, b, noise) = fourier::<12, 5>(&samples, largest);
     let over = 1.0 / largest;
@@ -300,7 +309,7 @@ fn slides_at(unit: &[Frame; 6], slides: [usize; 2], prismatic: &[bool; 6]) -> Br
         for (w, f) in [(w, plus), (-w, minus)] {
             if f <= plus.min(minus) + 1e-3 * (plus + minus) {
                 let closed = closing.close(&arm.joints(given, &at, w), root.double);
-                if closed.residual <= if root.double { 64.0 * CLOSED } else { CLOSED } {
+                if closing.is_closed(&closed, root.double) {
                     merge(&mut found, &closing, &closed, closed.residual > CLOSED);
                 }
             }
@@ -320,7 +329,8 @@ fn slides_at(unit: &[Frame; 6], slides: [usize; 2], prismatic: &[bool; 6]) -> Br
         }
         met &= double;
     }
-    found.near = !roots.free && (roots.near || distinct != roots.count || !met || arm.axes_meet());
+    let settled = !roots.near && distinct == roots.count && met;
+    found.near = !roots.free && (!settled || arm.axes_meet());
     if found.count == 0 && !found.continuum {
         let (mut place, mut least) = (0, Real::INFINITY);
         for (j, sample) in samples.iter().enumerate() {
@@ -333,10 +343,10 @@ fn slides_at(unit: &[Frame; 6], slides: [usize; 2], prismatic: &[bool; 6]) -> Br
         let joints = arm.joints(given, &at, sqrt(at.square.max(0.0)));
         let nearest = closing.nearest(&joints, 1e-2);
         found.missed(nearest.residual);
-        if nearest.residual <= 64.0 * CLOSED {
+        if closing.is_closed(&nearest, true) {
             merge(&mut found, &closing, &nearest, true);
-            found.near = true;
         }
+        found.near |= nearest.residual <= CLOSED_AT_MOST;
     }
-    found
+    (found, settled)
 }
