@@ -69,6 +69,10 @@ pub struct Estimate<'a> {
 /// Least improvement, of the root of the mean square, that a delay or Stribeck friction must bring.
 const WORTH: f64 = 0.99;
 
+/// Delays that are tried, in steps, and the step, s.
+const DELAYS: std::ops::RangeInclusive<i32> = -4..=10;
+const DELAY_STEP: f64 = 2.5e-3;
+
 /// Blocks of time of the cross-validation.
 const FOLDS: usize = 5;
 
@@ -264,6 +268,11 @@ impl<'a> Estimate<'a> {
         }
     }
 
+    /// Whether a delay is the first or the last of those that are tried.
+    pub fn is_last_delay(delay: f64) -> bool {
+        [DELAYS.start(), DELAYS.end()].iter().any(|end| (delay - f64::from(**end) * DELAY_STEP).abs() < 1e-9)
+    }
+
     /// Delays of torques behind positions that lower the squares of their joint, all else fitted anew; s.
     pub fn delays(&mut self) {
         let (equations, known) = self.equations(None);
@@ -288,8 +297,8 @@ impl<'a> Estimate<'a> {
                 let x = solve_fast(&total);
                 Gram { h: own.h.clone(), g, bb }.squares(&x)
             };
-            let step = 2.5e-3;
-            let grid: Vec<f64> = (-4..=10).map(|k| f64::from(k) * step).collect();
+            let step = DELAY_STEP;
+            let grid: Vec<f64> = DELAYS.map(|k| f64::from(k) * step).collect();
             let costs: Vec<f64> = grid.iter().map(|&delay| cost(delay)).collect();
             let best = (0..grid.len()).min_by(|&a, &b| costs[a].total_cmp(&costs[b])).expect("a grid");
             let mut delay = grid[best];
@@ -300,7 +309,7 @@ impl<'a> Estimate<'a> {
                     delay += 0.5 * step * (a - c) / bend;
                 }
             }
-            self.delays[j] = if costs[best] < WORTH * WORTH * costs[4] { delay } else { 0.0 };
+            self.delays[j] = if costs[best] < WORTH * WORTH * cost(0.0) { delay } else { 0.0 };
         }
     }
 

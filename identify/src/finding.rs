@@ -50,6 +50,8 @@ armgen_codegen::codes! {
         ShortLog Warning "short-log",
         /// Estimates that move out of their intervals at half the cutoff.
         BiasedRegressor Warning "biased-regressor",
+        /// A delay of a torque behind its position that is at the end of its range.
+        DelayAtLimit Warning "delay-at-limit",
         /// Too few rows in motion for the unknowns.
         NoMotion Error "no-motion",
         /// Drive gains without a known load.

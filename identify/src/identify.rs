@@ -241,6 +241,15 @@ pub fn identify(arm: &Arm, inputs: &[Input], options: &Options, findings: &mut F
         estimate.delays();
         activate(&mut estimate, &chosen);
     }
+    if options.delay.is_none() {
+        for (j, delay) in estimate.delays.iter().enumerate().filter(|(_, delay)| Estimate::is_last_delay(**delay)) {
+            let text = format!("the delay of joint `{}`, {:.1} ms, is at the end of its range", arm.joints[j].name, 1e3 * delay);
+            let help = "bring the stamps of torques and positions together, or give `delay` in the options; noise of positions leads here, too: log rates (`dq_JOINT`)";
+            findings.push(
+                Finding::new(Code::DelayAtLimit, &logs[0].name, text, help).in_column(format!("tau_{}", arm.joints[j].name)),
+            );
+        }
+    }
     estimate.along_reference = along_reference.as_deref();
     let identify_gains = has_currents && options.gains == Gains::Identify;
     let mut gain_intervals: Vec<Interval> = Vec::new();
@@ -326,7 +335,7 @@ pub fn identify(arm: &Arm, inputs: &[Input], options: &Options, findings: &mut F
                 estimate.active.len(),
                 names.join(", ")
             );
-            let help = "noise of the positions bends them, or what the model lacks: log the reference of the drives, too (`qr_JOINT`), and give `--instruments`, or choose a lower `cutoff`";
+            let help = "noise of the positions biases them, or terms that the model lacks: log rates (`dq_JOINT`), or the reference of the drives (`qr_JOINT`) for `--instruments`, or choose a lower `cutoff`";
             findings.push(Finding::new(Code::BiasedRegressor, &logs[0].name, text, help));
         }
     }

@@ -162,6 +162,9 @@ fn torques_under_other_names_and_signs_are_named() {
         });
     });
     check(&noise, Code::PoorFit, Warning, 0, "tau_elbow");
+    // Torques that come 60 ms later than their positions.
+    let late = of(&plain, &|m| (6..m.t.len()).rev().for_each(|k| m.tau[3 * k + 2] = m.tau[3 * (k - 6) + 2]));
+    check(&late, Code::DelayAtLimit, Warning, 0, "tau_elbow");
     let options = Options { keep: vec!["elbw.friction.offset".into()], delay: Some(vec![0.0; 2]), ..Options::default() };
     let unfit = of(&options, &|_| {});
     check(&unfit, Code::BadOptions, Error, 0, "");
