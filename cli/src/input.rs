@@ -102,8 +102,17 @@ pub(crate) fn package(folder: &Path) -> Result<Source, u8> {
     })
 }
 
-/// The exit code, after a message, where joints are coupled and a command is for arms in which each joint has a coordinate.
+/// The exit code, after a message, where joints are coupled or have smooth friction: for commands that need a coordinate of each joint and the
+/// signs of rates.
 pub(crate) fn without_coupling(source: &Source, manipulator: &Manipulator, command: &str) -> Result<(), u8> {
+    if let Some(joint) = manipulator.joints.iter().find(|joint| joint.smooth.is_some()) {
+        terminal::error(&format!(
+            "{}: smooth-friction: joint `{}` has smooth friction, and `armgen {command}` does not take it; leave out `smooth`",
+            source.name(),
+            joint.name
+        ));
+        return Err(FAULTY);
+    }
     let Some(joint) = manipulator.coupled_joint() else { return Ok(()) };
     let name = source.name();
     terminal::error(&format!(

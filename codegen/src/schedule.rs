@@ -196,6 +196,20 @@ fn steps(pool: &Pool, exprs: &[ExprId], order: &[usize]) -> (Vec<Step>, Vec<Outp
                     done[expr.index()] = Some(Operand::Step(steps.len() as u32 - 1));
                     continue;
                 }
+                // tanh(x) = sign(x) (1 - E) / (1 + E), E = exp(-2 |x|): no element of the ring, but few steps.
+                Node::Symbol(Symbol::OfRate(Elementary::Tanh, i)) => {
+                    let input = |function| Operand::Input(Symbol::OfRate(function, i));
+                    let one = || Operand::Constant(Number::one());
+                    let mut step = |operation, left, right| {
+                        steps.push(Step { operation, left, right });
+                        Operand::Step(steps.len() as u32 - 1)
+                    };
+                    let rest = step(Operation::Subtract, one(), input(Elementary::Decay));
+                    let sum = step(Operation::Add, one(), input(Elementary::Decay));
+                    let size = step(Operation::Divide, rest, sum);
+                    done[expr.index()] = Some(step(Operation::Multiply, input(Elementary::Sign), size));
+                    continue;
+                }
                 Node::Constant(_) | Node::Symbol(_) => continue,
                 Node::Add(a, b) => (if b.is_negated() { Operation::Subtract } else { Operation::Add }, a, b),
                 Node::Mul(a, b) => (Operation::Multiply, a, b),
@@ -248,7 +262,7 @@ fn operand(pool: &Pool, done: &[Option<Operand>], expr: ExprId) -> Operand {
     let known = || done[expr.index()].clone().expect("each step stands after its operands");
     match pool.node(expr) {
         Node::Constant(_) => Operand::Constant(pool.as_constant(expr.unsigned()).unwrap_or_else(Number::zero)),
-        Node::Symbol(Symbol::GravitySize(_) | Symbol::GravitySign(_)) => known(),
+        Node::Symbol(Symbol::GravitySize(_) | Symbol::GravitySign(_) | Symbol::OfRate(Elementary::Tanh, _)) => known(),
         Node::Symbol(symbol) => Operand::Input(symbol),
         Node::Add(..) | Node::Mul(..) | Node::Reciprocal(_) => known(),
     }

@@ -192,6 +192,8 @@ pub struct FrictionDescription {
     pub viscous: Value,
     /// Coulomb friction.
     pub coulomb: Value,
+    /// The rate v of tanh(dq/v), which takes the place of the sign of dq in Coulomb friction.
+    pub smooth: Value,
     /// The addition to Coulomb friction forwards, subtracted backwards.
     pub offset: Value,
     /// Coefficient of the cube of the rate.
@@ -208,6 +210,7 @@ impl FrictionDescription {
         FrictionDescription {
             viscous: of("viscous"),
             coulomb: of("coulomb"),
+            smooth: of("smooth"),
             offset: of("offset"),
             cubic: of("cubic"),
             load: of("load"),
@@ -216,9 +219,9 @@ impl FrictionDescription {
     }
 
     /// The keys that have one number, in the order of a file.
-    pub fn numbers(&self) -> [(&'static str, &Value); 5] {
-        let FrictionDescription { viscous, coulomb, offset, cubic, load, stribeck: _ } = self;
-        [("viscous", viscous), ("coulomb", coulomb), ("offset", offset), ("cubic", cubic), ("load", load)]
+    pub fn numbers(&self) -> [(&'static str, &Value); 6] {
+        let FrictionDescription { viscous, coulomb, smooth, offset, cubic, load, stribeck: _ } = self;
+        [("viscous", viscous), ("coulomb", coulomb), ("smooth", smooth), ("offset", offset), ("cubic", cubic), ("load", load)]
     }
 }
 

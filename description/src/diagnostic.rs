@@ -228,6 +228,8 @@ codes! {
         CoupledLoad Error "coupled-load",
         /// Dry friction at the rate of a joint that is no coordinate's.
         CoupledFriction Error "coupled-friction",
+        /// Smooth friction without Coulomb friction, or beside friction that jumps as the joint turns back.
+        SmoothFriction Error "smooth-friction",
         /// A mass below 0.
         NegativeMass Error "negative-mass",
         /// An inertia tensor that is not positive semidefinite.

@@ -103,6 +103,8 @@ pub enum Feature {
     Spring,
     /// Friction with an offset, or that grows with the cube of the rate.
     OffsetOrCubic,
+    /// Coulomb friction without a jump.
+    SmoothFriction,
     /// Stribeck friction.
     Stribeck,
     /// Friction that grows with the load.
@@ -111,5 +113,6 @@ pub enum Feature {
 
 impl Feature {
     /// Every feature.
-    pub const ALL: [Feature; 4] = [Feature::Spring, Feature::OffsetOrCubic, Feature::Stribeck, Feature::LoadFriction];
+    pub const ALL: [Feature; 5] =
+        [Feature::Spring, Feature::OffsetOrCubic, Feature::SmoothFriction, Feature::Stribeck, Feature::LoadFriction];
 }

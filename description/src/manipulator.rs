@@ -190,6 +190,8 @@ pub struct Joint {
     pub viscous: Option<Polynomial>,
     /// Coulomb friction at the joint, N m or N; the torque is coulomb · sign(dq).
     pub coulomb: Option<Polynomial>,
+    /// v, rad/s or m/s, above 0: the torque of Coulomb friction is coulomb · tanh(dq / v). There is no Stribeck and load friction beside it.
+    pub smooth: Option<Number>,
     /// Half the difference of Coulomb friction forwards and backwards, N m or N: the torque is offset at every rate.
     pub offset: Option<Polynomial>,
     /// Cubic friction, N m s³ or N s³/m³: the torque is cubic · dq³.
@@ -210,19 +212,21 @@ impl Joint {
         match feature {
             Feature::Spring => self.spring.is_some(),
             Feature::OffsetOrCubic => self.offset.is_some() || self.cubic.is_some(),
+            Feature::SmoothFriction => self.smooth.is_some(),
             Feature::Stribeck => self.stribeck.is_some(),
             Feature::LoadFriction => self.load.as_ref().is_some_and(|load| !load.is_zero()),
         }
     }
 
-    /// v of exp(-|dq| / v), which its friction contains.
+    /// v of exp(-|dq| / v), which its friction contains: tanh(dq / w) = sign(dq) (1 - E) / (1 + E) with E = exp(-2 |dq| / w).
     pub fn decay_velocity(&self) -> Option<Number> {
-        self.stribeck.as_ref().map(|stribeck| stribeck.velocity.clone())
+        let half = || Some(self.smooth.as_ref()?.times(&Number::from(2).inverse()?));
+        self.stribeck.as_ref().map(|stribeck| stribeck.velocity.clone()).or_else(half)
     }
 
     /// The velocity of its friction as the description has it; 1 where it has no velocity.
     pub fn friction_velocity(&self) -> Number {
-        self.decay_velocity().unwrap_or_else(Number::one)
+        self.smooth.clone().or_else(|| self.decay_velocity()).unwrap_or_else(Number::one)
     }
 }
 
@@ -435,7 +439,10 @@ impl Manipulator {
         self.joints.iter().enumerate().find_map(|(i, joint)| {
             let stribeck = joint.stribeck.as_ref().map(|stribeck| &stribeck.torque);
             let curved = joint.cubic.iter().chain(stribeck).any(is_given);
-            curved.then_some((i, "friction-not-treated", "cubic or Stribeck"))
+            match &joint.smooth {
+                Some(_) => Some((i, "smooth-friction", "smooth")),
+                None => curved.then_some((i, "friction-not-treated", "cubic or Stribeck")),
+            }
         })
     }
 

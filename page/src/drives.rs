@@ -66,6 +66,7 @@ fn columns(source: &Source, manipulator: &Manipulator, joints: &[(&Joint, &Joint
         motor("viscous at the rotor", ["N m s"; 2], &|m| of(m.viscous.as_ref()), |row| row.motor.as_ref()?.viscous.as_ref()),
         column("viscous friction", ["N m s", "N s/m"], &|j, row| cell(row.friction.viscous.as_ref(), of(j.viscous.as_ref()))),
         column("Coulomb friction", ["N m", "N"], &|j, row| cell(row.friction.coulomb.as_ref(), of(j.coulomb.as_ref()))),
+        column("its smooth rate", ["rad/s", "m/s"], &|j, row| cell(row.friction.smooth.as_ref(), exact(j.smooth.as_ref()))),
         column("its offset", ["N m", "N"], &|j, row| cell(row.friction.offset.as_ref(), of(j.offset.as_ref()))),
         column("cubic friction", ["N m s³", "N s³/m³"], &|j, row| cell(row.friction.cubic.as_ref(), of(j.cubic.as_ref()))),
         column("friction of the load", [""; 2], &|j, row| cell(row.friction.load.as_ref(), exact(j.load.as_ref()))),

@@ -118,7 +118,7 @@ fn operand(function: &Function, turn: f64, values: &[f64], arguments: &Arguments
             rate => rate.signum(),
         },
         Symbol::OfRate(Elementary::Decay, i) => (-given(Argument::Dq, &a.dq, i).abs() / function.stribeck[&i].to_f64()).exp(),
-        Symbol::GravitySize(_) | Symbol::GravitySign(_) => panic!("a step of a program, and no input"),
+        Symbol::GravitySize(_) | Symbol::GravitySign(_) | Symbol::OfRate(..) => panic!("a step of a program, and no input"),
         Symbol::Acceleration(i) => given(Argument::Ddq, &a.ddq, i),
         Symbol::ReferenceRate(i) => given(Argument::Dqr, &a.dqr, i),
         Symbol::ReferenceAcceleration(i) => given(Argument::Ddqr, &a.ddqr, i),

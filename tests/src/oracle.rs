@@ -80,6 +80,8 @@ pub struct Joint {
     pub viscous: Option<f64>,
     /// Coulomb friction at the joint, if given.
     pub coulomb: Option<f64>,
+    /// The rate v of F_c tanh(dq / v), if friction is smooth.
+    pub smooth: Option<f64>,
     /// Friction at the joint whatever its rate, if given.
     pub offset: Option<f64>,
     /// Coefficient of the cube of the rate, if given.

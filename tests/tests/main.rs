@@ -28,6 +28,7 @@ mod random_arms;
 mod random_arms_exact;
 mod robot_yaml_page;
 mod shown;
+mod smooth_friction;
 mod snapshots;
 mod technical_project;
 mod tips;

@@ -209,13 +209,17 @@ fn other_velocity(program: &Program, manipulator: &Manipulator, real: Float) -> 
     program.steps.iter().find_map(|step| {
         let Step::Stribeck(joint, literal) = step else { return None };
         let Some(velocity) = manipulator.coordinates().get(*joint).and_then(|of| of.joint.decay_velocity()) else {
-            return Some(format!("joint {} has no Stribeck friction", joint + 1));
+            return Some(format!("joint {} has no friction with an exponential", joint + 1));
         };
         let written = &program.literals[*literal];
         let other = !real.is_nearest(written.value, &formula(&velocity));
         other.then(|| {
             let given = velocity.to_f64();
-            format!("the Stribeck friction of joint {} fades at {}, in the description at {given}", joint + 1, written.text)
+            format!(
+                "the exponential of the friction of joint {} decays at {}, in the description at {given}",
+                joint + 1,
+                written.text
+            )
         })
     })
 }

@@ -279,9 +279,16 @@ impl Program {
     /// The divisor of a step that divides by what may come close to 0.
     pub fn divisor(&self, step: &Step) -> Option<usize> {
         match step {
-            Step::Divide(_, divisor) => Some(*divisor),
+            Step::Divide(_, divisor) => Some(*divisor).filter(|&divisor| !self.exceeds_one(divisor)),
             _ => None,
         }
+    }
+
+    /// Whether a step is 1 + exp(-|dq| / v), the divisor of smooth friction.
+    fn exceeds_one(&self, step: usize) -> bool {
+        let is_one = |step: usize| matches!(self.steps[step], Step::Literal(literal) if self.literals[literal].value == 1.0);
+        let decays = |step: usize| matches!(self.steps[step], Step::Stribeck(..));
+        matches!(self.steps[step], Step::Add(a, b) if is_one(a) && decays(b) || is_one(b) && decays(a))
     }
 
     /// All such divisors, as steps.

@@ -205,6 +205,10 @@ fn of_description(manipulator: &Manipulator) -> Hash {
             arm.word("load");
             arm.number(load);
         }
+        if let Some(smooth) = &joint.smooth {
+            arm.word("smooth");
+            arm.number(smooth);
+        }
         if let Some(stribeck) = &joint.stribeck {
             arm.word("stribeck");
             arm.polynomials([&stribeck.torque]);

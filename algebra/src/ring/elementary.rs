@@ -7,6 +7,8 @@ pub enum Elementary {
     Sign,
     /// exp(-|dq_i| / v_i), v_i a velocity of the joint's friction.
     Decay,
+    /// tanh(dq_i / v_i).
+    Tanh,
 }
 
 impl Elementary {
@@ -15,6 +17,7 @@ impl Elementary {
         match self {
             Elementary::Sign => 4,
             Elementary::Decay => 10,
+            Elementary::Tanh => 14,
         }
     }
 
@@ -25,6 +28,10 @@ impl Elementary {
             Elementary::Decay => {
                 let v = velocity();
                 [format!("exp(-abs(dq{k})/({v}))"), format!("e^{{-|\\dot q_{{{k}}}|/({v})}}")]
+            }
+            Elementary::Tanh => {
+                let v = velocity();
+                [format!("tanh(dq{k}/({v}))"), format!("\\tanh(\\dot q_{{{k}}}/({v}))")]
             }
         }
     }

@@ -89,6 +89,8 @@ pub struct Joint {
     pub stribeck: ExprId,
     /// The velocity of the elementary functions of its friction; 1 without any.
     pub friction_velocity: ExprId,
+    /// Whether Coulomb friction has tanh(dq / v) in place of sign(dq).
+    pub is_smooth: bool,
     /// Stiffness of its spring.
     pub stiffness: ExprId,
     /// The joint variable at which its spring is at rest.
@@ -552,6 +554,7 @@ fn joint(pool: &mut Pool, manipulator: &Manipulator, view: View<'_>, i: usize) -
         load,
         stribeck,
         friction_velocity,
+        is_smooth: joint.smooth.is_some(),
         stiffness,
         rest,
     }

@@ -4,7 +4,7 @@
 //! F_i = F_v dq_i + F_3 dq_i³ + F_c sign(dq_i) + F_0 + F_s sign(dq_i) exp(-|dq_i| / v_s)
 //! ```
 //!
-//! F_v has what the rotor adds, k_r² F_m. Friction that grows with the load depends on q: `quantities/load_friction.rs`.
+//! Smooth friction has tanh(dq_i / v) in place of sign(dq_i). F_v has what the rotor adds, k_r² F_m. Friction that grows with the load depends on q: `quantities/load_friction.rs`.
 
 use super::arm::{Arm, Joint};
 use super::parameters::StandardParameter;
@@ -52,7 +52,16 @@ static TERMS: [Term; 5] = [
         parameter: StandardParameter::Coulomb,
         function: direction,
         times_rate: false,
-        slope: None,
+        // F_c (1 - tanh²) / v; 0 for a sign.
+        slope: Some(|pool, arm, i, coefficient| {
+            if !arm.joints[i].is_smooth {
+                return ExprId::ZERO;
+            }
+            let (along, inverse) = (direction(pool, arm, i), pool.reciprocal(arm.joints[i].friction_velocity));
+            let square = pool.mul(along, along);
+            let (steepness, rest) = (pool.mul(coefficient, inverse), pool.sub(ExprId::ONE, square));
+            pool.mul(steepness, rest)
+        }),
     },
     Term {
         coefficient: |joint| joint.offset,
@@ -90,9 +99,9 @@ fn square_of_rate(pool: &mut Pool, _: &Arm, i: usize) -> ExprId {
     pool.mul(rate, rate)
 }
 
-/// The function of Coulomb friction: sign(dq), with sign(0) = 0.
-fn direction(pool: &mut Pool, _: &Arm, i: usize) -> ExprId {
-    of_rate(pool, Elementary::Sign, i)
+/// The function of Coulomb friction: sign(dq), with sign(0) = 0, or tanh(dq / v).
+fn direction(pool: &mut Pool, arm: &Arm, i: usize) -> ExprId {
+    of_rate(pool, if arm.joints[i].is_smooth { Elementary::Tanh } else { Elementary::Sign }, i)
 }
 
 /// F of each joint: terms with the factor dq take it from `rates`, and are linear in them where these are reference rates.

@@ -320,6 +320,7 @@ pub(super) const MOTOR: &[Entry] = &[
 pub(super) const FRICTION: &[Entry] = &[
     usual("viscous", "viscous: 0.2", Shape::Expression("N m s or N s/m"), "Torque viscous · dq."),
     optional("coulomb", Shape::Expression(EFFORT), "Torque coulomb · sign(dq)."),
+    optional("smooth", Shape::Expression(RATE), "Rate v, above 0: the Coulomb torque becomes coulomb · tanh(dq/v)."),
     optional("offset", Shape::Expression(EFFORT), "Torque offset in both directions, of either sign."),
     optional("cubic", Shape::Expression("N m s³ or N s³/m³"), "Torque cubic · dq³."),
     optional("load", Shape::Expression(""), "Torque load · |g(q)| · sign(dq), with the joint's entry of gravity."),

@@ -36,7 +36,7 @@ pub fn schema() -> Value {
         let words: Vec<&str> = conventions.map(|(word, _)| *word).collect();
         let mut joint = mapping(rows, &mut definitions);
         joint["not"] = json!({ "required": ["follows", "adds"] });
-        let of_rates = ["load", "stribeck"].map(|key| json!({ "required": [key] }));
+        let of_rates = ["load", "stribeck", "smooth"].map(|key| json!({ "required": [key] }));
         joint["dependencies"] = json!({
             "offset": { "anyOf": [{ "required": ["follows"] }, { "required": ["adds"] }] },
             "follows": { "properties": { "friction": { "not": { "anyOf": of_rates } } } },

@@ -44,6 +44,8 @@ pub enum Role {
     LoadFriction,
     /// The velocity at which Stribeck friction fades.
     StribeckVelocity,
+    /// The velocity of smooth friction.
+    SmoothVelocity,
     /// The stiffness of a spring.
     Stiffness,
     /// Where a spring is at rest.
@@ -76,6 +78,7 @@ impl Role {
             Role::Friction => "a friction coefficient",
             Role::LoadFriction => "the load friction of a joint",
             Role::StribeckVelocity => "the velocity of Stribeck friction",
+            Role::SmoothVelocity => "the velocity of smooth friction",
             Role::Stiffness => "the stiffness of a spring",
             Role::SpringRest => "the rest of a spring",
             Role::Armature => "an armature",
@@ -231,6 +234,7 @@ macro_rules! walk {
                     }
                     $one(to, Role::Friction, effort, & $($mutable)? joint.friction.viscous);
                     $one(to, Role::Friction, effort, & $($mutable)? joint.friction.coulomb);
+                    $one(to, Role::SmoothVelocity, rate, & $($mutable)? joint.friction.smooth);
                     $one(to, Role::Friction, effort, & $($mutable)? joint.friction.offset);
                     $one(to, Role::Friction, effort, & $($mutable)? joint.friction.cubic);
                     $one(to, Role::LoadFriction, Fixed, & $($mutable)? joint.friction.load);

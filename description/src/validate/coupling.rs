@@ -253,6 +253,11 @@ fn friction(
         context.report(Code::CoupledFriction, coulomb.span, message, "needs the sign of a sum of rates", help);
         valid = false;
     }
+    if let Some(smooth) = joint.friction.smooth.as_ref().filter(|_| is_coupled) {
+        let message = format!("joint {} is coupled and has smooth friction", call(i, joint));
+        context.report(Code::CoupledFriction, smooth.span, message, "of a coupled joint", "leave `smooth` out, or the coupling");
+        valid = false;
+    }
     let is_plain = own.is_some() && variable.factors.len() == 1;
     if let Some(stribeck) = joint.friction.stribeck.as_ref().filter(|_| !is_plain) {
         let message = format!("joint {} follows others and has Stribeck friction", call(i, joint));

@@ -6,7 +6,8 @@ use super::bodies::{self, optional_not_negative, warn_of_massless};
 use super::number::text_of;
 use super::{call, geometry, parents, zeros, Context};
 use crate::description::{
-    Convention, JointDescription, LimitsDescription, MotorDescription, SpringDescription, StribeckDescription,
+    Convention, FrictionDescription, JointDescription, LimitsDescription, MotorDescription, SpringDescription,
+    StribeckDescription,
 };
 use crate::diagnostic::Code;
 use crate::document::Expression;
@@ -50,6 +51,10 @@ pub(super) fn joint(
         Some(load) => self::load(load, &called, context).map(Some),
         None => Some(None),
     };
+    let smooth = match &description.friction.smooth {
+        Some(smooth) => self::smooth(smooth, &description.friction, &called, context).map(Some),
+        None => Some(None),
+    };
     let stribeck = match &description.friction.stribeck {
         Some(stribeck) => self::stribeck(stribeck, &called, context).map(Some),
         None => Some(None),
@@ -74,6 +79,7 @@ pub(super) fn joint(
         motor: motor?,
         viscous: viscous?,
         coulomb: coulomb?,
+        smooth: smooth?,
         offset: offset?,
         cubic: cubic?,
         load: load?,
@@ -94,6 +100,34 @@ fn load(given: &Expression, called: &str, context: &mut Context<'_>) -> Option<N
         return None;
     }
     Some(load)
+}
+
+fn smooth(given: &Expression, friction: &FrictionDescription, called: &str, context: &mut Context<'_>) -> Option<Number> {
+    let velocity = context.number(given)?;
+    if velocity.sign() != Ordering::Greater {
+        let message = format!("the velocity of the smooth friction of joint {called} is not positive");
+        let help =
+            "give the rate at which 76 % of the Coulomb friction acts, above 0; leave `smooth` out for friction that jumps";
+        context.report(Code::NonPositiveLimit, given.span, message, format!("this is {}", text_of(&velocity)), help);
+        return None;
+    }
+    let jumps = [
+        ("Stribeck friction", friction.stribeck.as_ref().map(|stribeck| stribeck.key)),
+        ("friction that grows with its load", friction.load.as_ref().map(|load| load.span)),
+    ];
+    if friction.coulomb.is_none() {
+        let message = format!("joint {called} has smooth friction without Coulomb friction");
+        let help = "give the torque as `coulomb`, which acts as coulomb · tanh(dq/smooth), or leave `smooth` out";
+        context.report(Code::SmoothFriction, given.span, message, "replaces sign(dq) of `coulomb`", help);
+        return None;
+    }
+    for (name, span) in jumps {
+        let Some(span) = span else { continue };
+        let message = format!("joint {called} has smooth friction and {name}");
+        context.report(Code::SmoothFriction, span, message, "jumps where the rate changes its sign", "leave one of the two out");
+        return None;
+    }
+    Some(velocity)
 }
 
 fn stribeck(description: &StribeckDescription, called: &str, context: &mut Context<'_>) -> Option<Stribeck> {

@@ -29,7 +29,7 @@ joints:
         - {name: \"tool\", mass: 1, com: [0, 0, 1/3]}
         - {origin: [{xyz: [0, 0, 1]}, {rpy: [0, 0, 1]}, {xyz: [1, 0, 0]}], mass: 2, inertia: {xx: 1, yy: 1, zz: 1, axis: [0, 0, 1], angle: 1}}
         - {name: \"<a & b>\", origin: {xyaxes: [0, 1, 0, 0, 0, 1]}, mass: 0.5}
-    friction: {viscous: 1/8}
+    friction: {viscous: 1/8, coulomb: 1/2, smooth: 0.05}
   - name: slide
     type: prismatic
     axis: [0.6, 0, 0.8]
@@ -96,6 +96,7 @@ pub(crate) fn state(arm: &Manipulator) -> [Vec<f64>; 2] {
         let passive = [&joint.viscous, &joint.coulomb, &joint.offset, &joint.cubic, &joint.armature];
         rotors.extend(passive.map(|value| value.as_ref().map_or(0.0, number)));
         rotors.extend(joint.load.iter().map(|load| load.to_f64()));
+        rotors.extend(joint.smooth.iter().map(|smooth| smooth.to_f64()));
         rotors.extend(joint.stribeck.iter().flat_map(|stribeck| [number(&stribeck.torque), stribeck.velocity.to_f64()]));
         rotors.extend(joint.spring.iter().flat_map(|spring| [number(&spring.stiffness), number(&spring.rest)]));
         let q = [0.3, -0.7, 1.1, 0.4][k % 4];

@@ -165,6 +165,7 @@ struct MotorText {
 struct FrictionText {
     viscous: Option<Text>,
     coulomb: Option<Text>,
+    smooth: Option<Text>,
     offset: Option<Text>,
     cubic: Option<Text>,
     load: Option<Text>,
@@ -488,6 +489,7 @@ fn joint(text: &JointText, (on, start): (usize, Placed), modified: bool, numbers
         motor: text.motor.as_ref().map(motor).transpose()?,
         viscous: numbers.some(&text.friction.viscous)?,
         coulomb: numbers.some(&text.friction.coulomb)?,
+        smooth: numbers.some(&text.friction.smooth)?,
         offset: numbers.some(&text.friction.offset)?,
         cubic: numbers.some(&text.friction.cubic)?,
         load: numbers.some(&text.friction.load)?.unwrap_or(0.0),

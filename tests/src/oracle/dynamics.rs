@@ -212,13 +212,17 @@ impl Model {
         self.friction_at(dq, dq)
     }
 
-    /// F_v dqr + (F_c + F_s exp(-|dq| / v_s)) sign(dq) + F_0 + F_3 dq² dqr.
+    /// F_v dqr + (F_c + F_s exp(-|dq| / v_s)) sign(dq) + F_0 + F_3 dq² dqr, with F_c tanh(dq / v) for F_c sign(dq) where friction is smooth.
     fn friction_at(&self, dq: &[f64], dqr: &[f64]) -> Vec<f64> {
         let sign = |x: f64| if x == 0.0 { 0.0 } else { x.signum() };
         let dry = |j: &super::Joint, x: f64| {
-            j.coulomb.unwrap_or(0.0) + j.stribeck.unwrap_or(0.0) * (-x.abs() / j.stribeck_velocity).exp()
+            let fading = j.stribeck.unwrap_or(0.0) * (-x.abs() / j.stribeck_velocity).exp();
+            match j.smooth {
+                Some(v) => j.coulomb.unwrap_or(0.0) * (x / v).tanh(),
+                None => (j.coulomb.unwrap_or(0.0) + fading) * sign(x),
+            }
         };
-        let coulomb = self.joints.iter().zip(dq).map(|(j, &x)| dry(j, x) * sign(x) + j.offset.unwrap_or(0.0));
+        let coulomb = self.joints.iter().zip(dq).map(|(j, &x)| dry(j, x) + j.offset.unwrap_or(0.0));
         let cubic = self.joints.iter().zip(dq).map(|(j, &x)| j.cubic.unwrap_or(0.0) * x * x);
         self.viscous().iter().zip(cubic).zip(dqr).zip(coulomb).map(|(((f, s), x), c)| (f + s) * x + c).collect()
     }
@@ -314,7 +318,7 @@ impl Model {
         (0..self.dof()).map(|k| self.potential(&Dual::along(q, &unit(k))).derivative).collect()
     }
 
-    /// Derivatives of the inverse dynamics: (∂tau/∂q, ∂tau/∂dq), each n x n, by dual numbers; sign(dq) counts as constant.
+    /// Derivatives of the inverse dynamics: (∂tau/∂q, ∂tau/∂dq), each n x n, by dual numbers; sign(dq) counts as constant, tanh(dq / v) does not.
     pub fn inverse_dynamics_derivatives(&self, q: &[f64], dq: &[f64], ddq: &[f64]) -> (Matrix, Matrix) {
         let n = self.dof();
         let rest = vec![0.0; n];
@@ -329,8 +333,12 @@ impl Model {
                 -joint.stribeck.unwrap_or(0.0) * fading
             }
         });
-        let slopes = self.viscous().into_iter().zip(cubic).zip(stribeck);
-        let slope: Vec<f64> = slopes.map(|((viscous, cubic), stribeck)| viscous + cubic + stribeck).collect();
+        let smooth =
+            self.joints.iter().zip(dq).map(|(joint, rate)| {
+                joint.smooth.map_or(0.0, |v| joint.coulomb.unwrap_or(0.0) / (v * (rate / v).cosh().powi(2)))
+            });
+        let slopes = self.viscous().into_iter().zip(cubic).zip(stribeck).zip(smooth);
+        let slope: Vec<f64> = slopes.map(|(((viscous, cubic), stribeck), smooth)| viscous + cubic + stribeck + smooth).collect();
         for k in 0..n {
             let mut unit = rest.clone();
             unit[k] = 1.0;

@@ -208,7 +208,10 @@ fn drive(i: usize, joint: &Joint, manipulator: &Manipulator) -> [String; 12] {
         cell(felt.as_ref(), inertia),
         cell(motor.map(|motor| &motor.mass), "kg"),
         cell(viscous.as_ref(), damping),
-        cell(joint.coulomb.as_ref(), torque),
+        match (cell(joint.coulomb.as_ref(), torque), &joint.smooth) {
+            (coulomb, Some(v)) => format!("{coulomb}, smooth within {} {rate}", decimal(v)),
+            (coulomb, None) => coulomb,
+        },
         cell(joint.offset.as_ref(), torque),
         cell(joint.cubic.as_ref(), cubed),
         joint.load.as_ref().filter(|load| !load.is_zero()).map_or(String::new(), |load| format!("{} |g|", decimal(load))),

@@ -286,7 +286,7 @@ fn bodies(tally: &mut Tally, scara: &Given) {
     let known = "pub fn known_torque(";
     let of_rates = [(Signs, "Stribeck friction of something that is not a joint rate")];
     tally.module(&dry, known, "stribeck(dq[1]", "stribeck(q[1]", &of_rates);
-    let fades = [(Velocities, "the Stribeck friction of joint 2 fades at 0.03, in the description at 0.02")];
+    let fades = [(Velocities, "the exponential of the friction of joint 2 decays at 0.03, in the description at 0.02")];
     tally.module(&dry, known, "stribeck(dq[1], 0.02)", "stribeck(dq[1], 0.03)", &fades);
 }
 

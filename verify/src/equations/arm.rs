@@ -86,6 +86,8 @@ pub struct Joint<E> {
     pub stribeck_velocity: E,
     /// Whether its friction has that.
     pub decays: bool,
+    /// Whether Coulomb friction is proportional to tanh(dq / 2 v).
+    pub smooth: bool,
     /// Stiffness of the joint's spring.
     pub stiffness: E,
     /// The joint variable where the spring is at rest.
@@ -293,6 +295,7 @@ impl<K: Arithmetic> Builder<'_, K> {
                 None => self.arithmetic.integer(1),
             },
             decays: joint.decay_velocity().is_some(),
+            smooth: joint.smooth.is_some(),
             stiffness: self.optional(joint.spring.as_ref().map(|spring| &spring.stiffness))?,
             rest: self.optional(joint.spring.as_ref().map(|spring| &spring.rest))?,
             armature: self.optional(joint.armature.as_ref())?,
@@ -404,6 +407,7 @@ impl<E: Element> Arm<E> {
             stribeck: f(&joint.stribeck),
             stribeck_velocity: f(&joint.stribeck_velocity),
             decays: joint.decays,
+            smooth: joint.smooth,
             stiffness: f(&joint.stiffness),
             rest: f(&joint.rest),
             armature: f(&joint.armature),
@@ -504,10 +508,18 @@ impl<E: Element> Arm<E> {
         sums
     }
 
-    /// A state with the velocities of this arm's friction.
+    /// A state with the velocities of this arm's friction, and with tanh(dq / 2 v) where it is smooth: with E = exp(-|dq| / v) that is
+    /// sign(dq) (1 - E) / (1 + E).
     pub fn with_friction(&self, mut state: State<E>) -> State<E> {
-        for (a, velocity) in state.stribeck_velocities.iter_mut().enumerate() {
-            velocity.clone_from(&self.joints[self.joint_of(a)].stribeck_velocity);
+        for a in 0..self.dof() {
+            let joint = &self.joints[self.joint_of(a)];
+            state.stribeck_velocities[a].clone_from(&joint.stribeck_velocity);
+            if joint.smooth {
+                let (one, e) = (&self.one, &state.stribeck[a]);
+                let size = one.minus(e).over(&one.plus(e)).unwrap_or_else(|| self.zero.clone());
+                state.directions[a] = state.signs[a].times(&size);
+                state.smooth[a] = true;
+            }
         }
         state
     }

@@ -25,8 +25,10 @@ pub struct State<E> {
     pub tau: Vec<E>,
     /// Signs of the joint rates, as independent inputs.
     pub signs: Vec<E>,
-    /// What Coulomb friction is multiplied with: the signs.
+    /// What Coulomb friction is multiplied with: the signs, or tanh(dq / 2 v).
     pub directions: Vec<E>,
+    /// Whether they are tanh(dq / 2 v).
+    pub smooth: Vec<bool>,
     /// exp(-|dq| / v) of the joints whose friction has them, as independent inputs.
     pub stribeck: Vec<E>,
     /// Their velocities v, for derivatives by the rates; 1 until an arm sets them.
@@ -46,8 +48,8 @@ impl<E: Element> State<E> {
     pub fn of(arguments: Arguments<E>, angles: Vec<(E, E)>, signs: Vec<E>, [zero, one]: [E; 2]) -> State<E> {
         let Arguments { pi, q, dq, ddq, dqr, ddqr, tau, g0 } = arguments;
         let (stribeck, stribeck_velocities) = (vec![zero.clone(); q.len()], vec![one.clone(); q.len()]);
-        let directions = signs.clone();
-        State { angles, q, dq, ddq, dqr, ddqr, tau, signs, directions, stribeck, stribeck_velocities, pi, g0, zero, one }
+        let (directions, smooth) = (signs.clone(), vec![false; signs.len()]);
+        State { angles, q, dq, ddq, dqr, ddqr, tau, signs, directions, smooth, stribeck, stribeck_velocities, pi, g0, zero, one }
     }
 
     /// The same with random exponentials for joints whose friction has them.
@@ -80,8 +82,8 @@ impl<E: Element> State<E> {
         let (zero, one) = (arithmetic.integer(0), arithmetic.integer(1));
         let (stribeck, stribeck_velocities) = (vec![zero.clone(); n], vec![one.clone(); n]);
         let [pi, g0] = [Vec::new(), Vec::new()];
-        let directions = signs.clone();
-        State { angles, q, dq, ddq, dqr, ddqr, tau, signs, directions, stribeck, stribeck_velocities, pi, g0, zero, one }
+        let (directions, smooth) = (signs.clone(), vec![false; signs.len()]);
+        State { angles, q, dq, ddq, dqr, ddqr, tau, signs, directions, smooth, stribeck, stribeck_velocities, pi, g0, zero, one }
     }
 
     /// The state as dual numbers: joint variables change with `along`, rates with `rates`, everything else is constant.
@@ -99,6 +101,15 @@ impl<E: Element> State<E> {
             let by_rate = self.signs[i].times(value).over(&self.stribeck_velocities[i]).unwrap_or_else(|| self.zero.clone());
             Dual { value: value.clone(), rate: by_rate.times(&rates[i]).negated() }
         };
+        // d/dt tanh(dq / 2 v) = (1 - tanh²) ddq / 2 v
+        let direction = |(i, value): (usize, &E)| {
+            if !self.smooth[i] {
+                return Dual::constant(value);
+            }
+            let (rest, velocity) = (self.one.minus(&value.times(value)), &self.stribeck_velocities[i]);
+            let slope = rest.over(&velocity.plus(velocity)).unwrap_or_else(|| self.zero.clone());
+            Dual { value: value.clone(), rate: slope.times(&rates[i]) }
+        };
         State {
             stribeck: self.stribeck.iter().enumerate().map(fading).collect(),
             stribeck_velocities: still(&self.stribeck_velocities),
@@ -110,7 +121,8 @@ impl<E: Element> State<E> {
             ddqr: still(&self.ddqr),
             tau: still(&self.tau),
             signs: still(&self.signs),
-            directions: still(&self.directions),
+            directions: self.directions.iter().enumerate().map(direction).collect(),
+            smooth: self.smooth.clone(),
             pi: still(&self.pi),
             g0: still(&self.g0),
             zero: Dual::constant(&self.zero),
@@ -133,6 +145,7 @@ impl<E> State<E> {
             tau: all(self.tau),
             signs: all(self.signs),
             directions: all(self.directions),
+            smooth: self.smooth,
             stribeck: all(self.stribeck),
             stribeck_velocities: all(self.stribeck_velocities),
             pi: all(self.pi),

@@ -75,6 +75,7 @@ pub static INVERSE_DYNAMICS_DERIVATIVES: Quantity = Quantity {
         "two matrices `m[joint of tau][joint of q or dq]`; units of tau per rad or m, and per rad/s or m/s. Coulomb friction counts as constant: its \
          derivative is taken as 0, at rest too.",
     )
+    .with(Feature::SmoothFriction, SMOOTH)
     .with(Feature::LoadFriction, LOAD),
     recursion: Recursion::new(RewriteScope::Dynamics, |pool, arm, plan, _| {
         let motion = Motion::plain(pool, arm);
@@ -116,6 +117,7 @@ pub static FORWARD_DYNAMICS_DERIVATIVES: Quantity = Quantity {
         "three matrices `m[joint of ddq][joint of q, dq or tau]`; units of ddq per rad or m, per rad/s or m/s, and per N m or N. The third is the \
          inverse of the inertia matrix. Coulomb friction counts as constant: its derivative is taken as 0, at rest too.",
     )
+    .with(Feature::SmoothFriction, SMOOTH)
     .with(Feature::LoadFriction, LOAD),
     recursion: Recursion {
         in_coordinates: true,
@@ -128,6 +130,9 @@ pub static FORWARD_DYNAMICS_DERIVATIVES: Quantity = Quantity {
     gathers: &[],
     interface: Some("ForwardDynamicsDerivatives"),
 };
+
+/// Documentation of the derivatives of smooth friction.
+const SMOOTH: &str = "Smooth friction is no constant: its derivative by dq_i is F_c (1 - tanh(dq_i / v)²) / v.";
 
 /// Documentation of the derivatives of friction that grows with the load.
 const LOAD: &str =

@@ -4,7 +4,7 @@
 //! F_i = (k_r² F_m + F_v) dq_i + F_c sign(dq_i)                                       (the book, eq. 7.42)
 //! ```
 //!
-//! and F_0 + F_3 dq_i³ + F_s sign(dq_i) exp(-|dq_i| / v_s) where the description has them.
+//! with tanh(dq_i / v) in place of the sign where friction is smooth, and F_0 + F_3 dq_i³ + F_s sign(dq_i) exp(-|dq_i| / v_s) where the description has them.
 
 use crate::derive::friction;
 use crate::derive::passes::RewriteScope;
@@ -27,6 +27,10 @@ pub static FRICTION: Quantity = Quantity {
     .with(
         Feature::OffsetOrCubic,
         "Where the description has them, F_0 + F_3 dq_i³ are added; with F_0 the torque need not have that sign.",
+    )
+    .with(
+        Feature::SmoothFriction,
+        "Smooth friction has F_c tanh(dq_i / v) in place of F_c sign(dq_i), v the number of its joint.",
     )
     .with(Feature::Stribeck, "Stribeck friction adds F_s sign(dq_i) exp(-|dq_i| / v_s), with the numbers of its joint.")
     .with(Feature::LoadFriction, "What grows with the load of a joint depends on q and is {load_friction}."),

@@ -26,6 +26,7 @@ pub static REGRESSOR: Quantity = Quantity {
          With dqr = dq and ddqr = ddq this is the regressor of inverse dynamics.",
     )
     .with(Feature::OffsetOrCubic, "In F cubic friction is F_3 dq² dqr.")
+    .with(Feature::SmoothFriction, "In F and in the column of F_c smooth friction has tanh(dq / v) in place of sign(dq).")
     .with(Feature::Stribeck, "In F Stribeck friction is F_s sign(dq) exp(-|dq| / v_s), linear in F_s; v_s is a number of the description.")
     .with(Feature::LoadFriction, "Friction that grows with the load is not linear in parameters and not in F: {load_friction} is added to Y pi + tau_known."),
     recursion: Recursion { view: |model, _| View::Vector(&model.parameters), starts: &STARTS, ..Recursion::new(RewriteScope::Frames, |pool, arm, plan, input| regressor_by_plan(pool, arm, &input.model.parameters, plan).concat()) },
