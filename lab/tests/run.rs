@@ -95,6 +95,24 @@ fn results_outside_and_faulty_files_give_code_1() {
     assert!(err(&output).contains("faulty.yaml:2:1") && err(&output).contains("did you mean `title`?"), "{}", err(&output));
 }
 
+/// `robots/NAME.yaml` beside the experiments is the robot of their expectations. Comments of it do not count.
+#[test]
+fn expectations_of_another_robot_of_the_same_name_do_not_judge() {
+    let folder = folder("run_edited");
+    for inner in ["experiments", "robots"] {
+        fs::create_dir(folder.join(inner)).expect("a folder");
+    }
+    let outside = for_the_built_robot(&folder.join("experiments"), "outside.yaml", 1e9);
+    let known = folder.join("robots").join(format!("{}.yaml", robot().name));
+    let described = include_str!("../../robot.yaml");
+    for (text, code) in [(format!("# The same.\n{described}\n# Its end.\n"), 1), (format!("{described}allow: [dust]\n"), 0)] {
+        fs::write(&known, text).expect("a file");
+        let output = run(&folder, &[&outside]);
+        assert_eq!(output.status.code(), Some(code), "{output:?}");
+        assert_eq!(err(&output).contains("the expectations belong to another robot"), code == 0, "{}", err(&output));
+    }
+}
+
 #[test]
 fn a_file_that_is_not_there_gives_code_2() {
     assert_eq!(run(&folder("run_absent"), &[Path::new("experiments/absent.yaml")]).status.code(), Some(2));

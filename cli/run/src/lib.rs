@@ -29,7 +29,8 @@ pub use any_arm::any_arm;
 
 /// Runs the experiments for this robot, or a demonstration if there are no experiments.
 pub fn run(files: &[PathBuf], out: &Path, arm: &dyn Arm, description: &Source) -> u8 {
-    let Files { experiments, others, paths, read, code } = read_all(&named(files), arm.robot());
+    let named = named(files);
+    let Files { experiments, others, paths, read, code } = read_all(&named, arm.robot());
     let built = &arm.robot().name;
     for (robot, count) in &others {
         let what = input::counted(*count, "experiment");
@@ -54,8 +55,28 @@ pub fn run(files: &[PathBuf], out: &Path, arm: &dyn Arm, description: &Source) -
         // The error of a faulty or missing file is the result; otherwise there is nothing to run.
         ([], DONE) => demonstrate(arm, out, description),
         ([], code) => code,
-        (experiments, code) => code.max(run_all(experiments, &read, arm, out, description)),
+        (experiments, code) => {
+            let other = described_otherwise(&named, &arm.robot().name, description);
+            code.max(run_all(experiments, &read, arm, out, description, other.as_deref()))
+        }
     }
+}
+
+/// The description `robots/NAME.yaml` beside the folder of an experiment, if the arm at hand has its name and another description: the expectations
+/// then belong to another robot.
+fn described_otherwise(files: &[PathBuf], name: &str, description: &Source) -> Option<PathBuf> {
+    let beside = |file: &PathBuf| Some(file.parent()?.parent()?.join("robots").join(format!("{name}.yaml")));
+    let known: BTreeSet<PathBuf> = files.iter().filter_map(beside).collect();
+    known.into_iter().find(|known| text_of(known).is_ok_and(|text| content(&text) != content(description.text())))
+}
+
+/// The lines of a description without comments.
+fn content(text: &str) -> Vec<&str> {
+    let lines = text.lines().map(|line| match line.split_once(" #") {
+        Some((before, _)) => before.trim_end(),
+        None => line.trim_end(),
+    });
+    lines.filter(|line| !line.is_empty() && !line.starts_with('#')).collect()
 }
 
 /// The files to run: the named files, or the experiments of the working directory, sorted by name.
@@ -146,7 +167,15 @@ fn text_of(path: &Path) -> std::io::Result<String> {
     input::decoded(bytes).map_err(|fault| std::io::Error::new(std::io::ErrorKind::InvalidData, format!("it {fault}")))
 }
 
-fn run_all(experiments: &[Experiment], read: &BTreeSet<PathBuf>, arm: &dyn Arm, out: &Path, description: &Source) -> u8 {
+/// Runs, draws and judges. `other`: the description of another robot, to which the expectations belong.
+fn run_all(
+    experiments: &[Experiment],
+    read: &BTreeSet<PathBuf>,
+    arm: &dyn Arm,
+    out: &Path,
+    description: &Source,
+    other: Option<&Path>,
+) -> u8 {
     if let Err(error) = std::fs::create_dir_all(out) {
         terminal::error(&format!("cannot create {}: {error}", out.display()));
         return UNREADABLE;
@@ -209,10 +238,16 @@ fn run_all(experiments: &[Experiment], read: &BTreeSet<PathBuf>, arm: &dyn Arm, 
     }
     let runs = page::of_jobs(&jobs);
     code = code.max(page::write_index(out, description, &runs));
-    if met {
-        code
-    } else {
-        code.max(FAULTY)
+    match other {
+        _ if met => code,
+        Some(known) => {
+            let (name, known) = (&arm.robot().name, known.display());
+            terminal::note(&format!(
+                "the expectations belong to another robot: {known} describes another `{name}` than the arm here; give yours a `name` of its own"
+            ));
+            code
+        }
+        None => code.max(FAULTY),
     }
 }
 
