@@ -57,11 +57,10 @@ impl Values<'_> {
         let words: Vec<&str> = text.split_ascii_whitespace().collect();
         if words.len() != N && !is_use(text) {
             let (message, help) = match (N, words.len()) {
-                (1, 0) => (format!("{what} has no number"), format!("write one number, such as `{name}=\"1\"`")),
-                (1, count) => (
-                    format!("{what} is `{}`, {count} words instead of one number", shown(text)),
-                    format!("write one number, such as `{name}=\"-1\"`"),
-                ),
+                (1, count) => {
+                    let how = if count == 0 { "has no number".into() } else { format!("is `{}`, not one number", shown(text)) };
+                    (format!("{what} {how}"), format!("write one number, such as `{name}=\"1\"`"))
+                }
                 (_, count) => (
                     format!("{what} has {count} of {N} numbers"),
                     format!("write {N}, with blanks between them: `{name}=\"{}\"`", ["0"; N].join(" ")),

@@ -199,3 +199,17 @@ fn names_of_end_effectors_are_kept_or_noted() {
         assert!(imported.is_none() && diagnostics.iter().any(|fault| fault.code.name() == "duplicate-name"));
     }
 }
+
+/// The options that leave fingers out name leaders alone: a follower in them would be locked against its coupling.
+#[test]
+fn fingers_that_follow_are_left_out_by_their_leader() {
+    let source = robot(&[
+        joint("wrist", "continuous", "base", ""),
+        joint("tool", "fixed", "wrist_link", ""),
+        joint("finger", "prismatic", "wrist_link", ""),
+        joint("other_finger", "prismatic", "wrist_link", "<mimic joint='finger' multiplier='-1'/>"),
+    ]);
+    let (none, diagnostics) = import(&source, &Options::default());
+    let help = diagnostics.iter().map(|fault| fault.help.as_str()).collect::<String>();
+    assert!(none.is_none() && help.contains("or where you say: `--lock finger=0`;"), "{help}");
+}

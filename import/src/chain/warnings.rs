@@ -21,16 +21,16 @@ impl Builder<'_> {
         if lower >= upper || (lower..=upper).contains(&lock.value) {
             return;
         }
-        let (name, text) = (shown(&joint.name), &lock.text);
+        let name = shown(&joint.name);
         let decisive = self.locks.decisive(index);
         let is_led = decisive != index && self.tree.joints[decisive].kind.moves() && !self.has_factor_zero(index);
         let (message, help) = match shown(&self.tree.joints[decisive].name) {
             leader if is_led => (
-                format!("the joint `{name}` follows `{leader}` to {text}, outside its limits {lower} to {upper}"),
+                format!("the joint `{name}` follows `{leader}` to {}, outside its limits {lower} to {upper}", digits(lock.value)),
                 format!("change where its leader rests: `--lock {leader}=VALUE`"),
             ),
             _ => (
-                format!("the joint `{name}` stands at {text}, outside its limits {lower} to {upper}"),
+                format!("the joint `{name}` stands at {}, outside its limits {lower} to {upper}", lock.text),
                 format!("say where it is to stand: `--lock {name}=VALUE`"),
             ),
         };
@@ -92,10 +92,10 @@ impl Builder<'_> {
         let factor = factor.map_or(1.0, |factor| factor.value);
         let who = if factor == 0.0 { "the file".to_owned() } else { format!("its leader `{leader_name}`") };
         let message = format!("the joint `{name}` is locked at {}, but {who} puts it at {}", lock.text, digits(by_file.value));
-        let mut help = format!("the file has no such posture: leave out `--lock {name}`");
+        let mut help = format!("the file has no such posture: leave `--lock {name}` out");
         if factor != 0.0 && self.tree.joints[leader].kind.moves() && self.format.leader(leader).is_none() {
             let at = digits((lock.value - offset.value) / factor);
-            help = format!("{help}, and lock the leader where both agree, such as `--lock {leader_name}={at}`");
+            help = format!("{help}, or hold both by the leader alone: `--lock {leader_name}={at}`");
         }
         self.values.report(Code::ChangesMotion, joint.span, message, "locked", help);
     }

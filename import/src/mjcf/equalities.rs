@@ -72,7 +72,7 @@ pub(super) fn ratio(
             values.report(Code::WrongLength, span, message, "", "write the offset, the factor, and nothing else that is not 0");
         }
     }
-    let mut coefficients = coefficients.map_or_else(Vec::new, |(text, span)| values.words(text, span, "polycoef")).into_iter();
+    let mut coefficients = coefficients.map_or_else(Vec::new, |(text, span)| values.words(text, span, "`polycoef`")).into_iter();
     let (constant, multiplier) = (coefficients.next().unwrap_or_else(Decimal::zero), coefficients.next());
     let mut reference = |joint: usize| {
         let element = mjcf.joints[joint].joint?;
@@ -151,8 +151,8 @@ pub(super) fn refuse(mjcf: &Mjcf<'_, '_>, equality: Node<'_, '_>, tree: &Tree, d
         (Some(first), Some(_), Some(taken)) if of_joints => {
             let message = format!("the joint `{first}` follows `{}` already", shown(taken.leader_name));
             let help = format!("a joint follows one other joint: take one of the two equalities out, or hold it with `--lock {first}=VALUE`");
-            let fault = Diagnostic::new(Code::MjcfFeature, place(equality), message, "the second equality", help);
-            diagnostics.push(fault.also(place(taken.node), "the first one"));
+            let fault = Diagnostic::new(Code::MjcfFeature, place(equality), message, "not taken", help);
+            diagnostics.push(fault.also(place(taken.node), "taken"));
             return;
         }
         (Some(first), Some(second), None) if of_joints => (
