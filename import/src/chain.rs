@@ -7,6 +7,7 @@ mod gravity;
 mod locks;
 mod names;
 mod tips;
+mod warnings;
 
 use std::collections::btree_map::{BTreeMap, Entry};
 use std::collections::BTreeSet;
@@ -167,7 +168,15 @@ pub(crate) fn arm(
     let mut tips: Vec<(Option<&str>, usize)> = Vec::new();
     let mut others = Vec::new();
     for (name, link) in &options.tips {
-        tips.push((name.as_deref().or(Some(link)), named_link(tree, Some(link), "--tip", diagnostics)??));
+        let found = named_link(tree, Some(link), "--tip", diagnostics)??;
+        let name = name.as_deref().unwrap_or(link);
+        if tips.iter().any(|(other, _)| *other == Some(name)) {
+            let message = format!("two end effectors are called `{}`", shown(name));
+            let help = "give each `--tip` a name of its own: `--tip left=LINK --tip right=LINK`";
+            diagnostics.push(Diagnostic::new(Code::DuplicateName, beginning(), message, "", help));
+            return None;
+        }
+        tips.push((Some(name), found));
     }
     if options.all {
         let all = tips::all(tree, base, &locks, diagnostics)?;
@@ -204,7 +213,8 @@ pub(crate) fn arm(
         let names: Vec<String> = followers.taken.iter().map(|&joint| format!("`{}`", shown(&tree.joints[joint].name))).collect();
         notes.push(format!("joints beside the chain that move with it: {}; `--lock JOINT=VALUE` holds one", names.join(", ")));
     }
-    format.check(&Extent { moving: &moving, carriers: &moved(tree, &path, &moving), tree }, values.diagnostics);
+    let extent = Extent { moving: &moving, held: locks.given(), carriers: &moved(tree, &path, &moving), tree };
+    format.check(&extent, values.diagnostics);
     let on_path = path.iter().copied().collect();
     let led = BTreeMap::new();
     let mut builder = Builder {
@@ -221,6 +231,11 @@ pub(crate) fn arm(
         bodies: 0,
     };
     let (mut rows, ends, on_base) = builder.rows(base, &path, &tips)?;
+    for ((given, _), end) in options.tips.iter().zip(&ends) {
+        if let (Some(given), Some(name)) = (given, end.name.as_ref().filter(|name| Some(*name) != given.as_ref())) {
+            notes.push(format!("the end effector `{}` is called `{name}`, which every language takes", shown(given)));
+        }
+    }
     let mut led_efforts = 0;
     if rows.iter().any(|row| row.follows.is_some()) && !builder.values.diagnostics.has_errors() {
         followers::check(&mut rows, &mut builder.values);
@@ -451,7 +466,7 @@ impl Builder<'_> {
             None => self.following(index)?,
         };
         self.warn_outside(index, &lock);
-        self.warn_of_frozen(index);
+        self.warn_of_lock(index, &lock);
         self.locked.push(lock.clone());
         if lock.value == 0.0 {
             return None;
@@ -512,63 +527,6 @@ impl Builder<'_> {
             }
         }
         Some((body, attached, unreadable))
-    }
-
-    /// Warns of a joint whose value violates its own limits.
-    fn warn_outside(&mut self, index: usize, lock: &Lock) {
-        let joint = &self.tree.joints[index];
-        let Some([lower, upper]) = self.format.range(index, &mut self.values) else { return };
-        if lower < upper && (lock.value < lower || lock.value > upper) {
-            let message =
-                format!("the joint `{}` stands at {}, outside its limits {lower} to {upper}", shown(&joint.name), lock.text);
-            let help = format!("say where it is to stand: `--lock {}=VALUE`", shown(&joint.name));
-            self.values.report(Code::LockOutside, joint.span, message, "", help);
-        }
-    }
-
-    /// Warns of a joint that the file moves with another one, and that a lock holds while that one moves: with the mass that then stands still.
-    fn warn_of_frozen(&mut self, index: usize) {
-        let Some(leader) = self.moving_leader(index).filter(|_| !self.locks.rests(index)) else { return };
-        let mass = self.mass_below(index);
-        if mass == 0.0 {
-            return;
-        }
-        let joint = &self.tree.joints[index];
-        let (name, leader) = (shown(&joint.name), shown(&self.tree.joints[leader].name));
-        let message = format!("the joint `{name}` follows `{leader}`, and is locked: {mass} kg stand still that the file moves");
-        let help = "torques and accelerations are not those of the file; frames of the chain are";
-        self.values.report(Code::ChangesMotion, joint.span, message, "locked", help);
-    }
-
-    /// Warns of a fixed joint that the file lets follow one that moves.
-    fn warn_of_fixed_follower(&mut self, index: usize) {
-        let Some((leader, (_, span))) = self.moving_leader(index).zip(self.format.leader(index)) else { return };
-        let (name, leader) = (shown(&self.tree.joints[index].name), shown(&self.tree.joints[leader].name));
-        let message = format!("the joint `{name}` is fixed, and its `mimic` names `{leader}`, which moves");
-        let help = "it stands still, as in other programs; if it is to move, its type is `revolute` or `prismatic`";
-        self.values.report(Code::ChangesMotion, span, message, "not used", help);
-    }
-
-    /// The joint of the chain that moves and that a joint follows, be it through others.
-    fn moving_leader(&self, index: usize) -> Option<usize> {
-        let mut at = index;
-        for _ in 0..self.tree.joints.len() {
-            at = self.tree.joint(self.format.leader(at)?.0)?;
-            if self.on_path.contains(&at) && self.tree.joints[at].kind.moves() && self.locks.of(at).is_none() {
-                return Some(at);
-            }
-        }
-        None
-    }
-
-    /// The mass of all that hangs on a joint, in kg, for a message.
-    pub(super) fn mass_below(&self, index: usize) -> f64 {
-        let (mut mass, mut open) = (0.0, vec![self.tree.joints[index].child]);
-        while let Some(link) = open.pop() {
-            mass += self.format.mass(link);
-            open.extend(self.tree.links[link].below.iter().map(|&joint| self.tree.joints[joint].child));
-        }
-        mass
     }
 
     /// A moving link has a mass distribution.

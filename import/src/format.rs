@@ -1,6 +1,6 @@
 //! The common part of the formats: a tree of links and joints. The numbers of each part are read when the chain needs them.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 use armgen_codegen::diagnostic::Diagnostics;
 use armgen_codegen::source::Span;
@@ -43,6 +43,8 @@ pub(crate) struct Part {
 pub(crate) struct Extent<'r> {
     /// Joints that move.
     pub(crate) moving: &'r [usize],
+    /// Joints that the user locks.
+    pub(crate) held: &'r BTreeSet<usize>,
     /// Links that move, each with the last joint above it that does.
     pub(crate) carriers: &'r BTreeMap<usize, usize>,
     /// All of it.
@@ -85,10 +87,8 @@ pub(crate) trait Format {
     /// Whether the file gives a link a mass distribution.
     fn has_body(&self, link: usize) -> bool;
 
-    /// The mass of a link in kg, for a message; 0 where it is not known.
-    fn mass(&self, _link: usize) -> f64 {
-        0.0
-    }
+    /// The mass of a link in kg, for a message; `None` where no number of the file gives it.
+    fn mass(&self, link: usize) -> Option<f64>;
 
     /// Whether a link that moves may do without one.
     fn may_be_massless(&self, _link: usize) -> bool {

@@ -587,6 +587,16 @@ impl Format for Mjcf<'_, '_> {
         matches!(self.links[link], Held::Body(node) if self.inertial(node).is_some() || self.is_of_geometries(node))
     }
 
+    fn mass(&self, link: usize) -> Option<f64> {
+        match self.links[link] {
+            Held::Body(node) => match self.inertial(node) {
+                Some(inertial) => inertial.attribute("mass")?.trim().parse().ok(),
+                None => (!self.is_of_geometries(node)).then_some(0.0),
+            },
+            _ => Some(0.0),
+        }
+    }
+
     fn may_be_massless(&self, link: usize) -> bool {
         matches!(self.links[link], Held::Passed)
     }
@@ -615,6 +625,8 @@ impl Format for Mjcf<'_, '_> {
         let named: Vec<(&str, Element<'_, '_>)> =
             joints.map(|element| (element.node.attribute("name").unwrap_or_default(), element)).collect();
         let mut lines = effects::switched_off(self, &named);
+        let names: Vec<&str> = named.iter().map(|(name, _)| *name).collect();
+        lines.extend(equalities::switched_off(self, &names));
         if moving.iter().any(|joint| self.equalities.contains_key(joint)) {
             lines.push("equalities of joints are rigid here: `solref` and `solimp` are left out".into());
         }

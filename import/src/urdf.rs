@@ -356,9 +356,9 @@ impl Format for Urdf<'_, '_> {
         felt::warn(self.root, extent, diagnostics);
     }
 
-    fn mass(&self, link: usize) -> f64 {
+    fn mass(&self, link: usize) -> Option<f64> {
         let mass = child(self.links[link], "inertial").and_then(|inertial| child(inertial, "mass"));
-        mass.and_then(|mass| mass.attribute("value")?.trim().parse().ok()).unwrap_or(0.0)
+        Some(mass.and_then(|mass| mass.attribute("value")?.trim().parse().ok()).unwrap_or(0.0))
     }
 
     fn left_out(&self) -> BTreeMap<String, usize> {

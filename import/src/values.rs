@@ -56,8 +56,16 @@ impl Values<'_> {
     pub(crate) fn list<const N: usize>(&mut self, text: &str, span: Span, name: &str, what: &str) -> Option<[Decimal; N]> {
         let words: Vec<&str> = text.split_ascii_whitespace().collect();
         if words.len() != N && !is_use(text) {
-            let message = format!("{what} has {} of {N} {}", words.len(), if N == 1 { "number" } else { "numbers" });
-            let help = format!("write {N}, with blanks between them: `{name}=\"{}\"`", ["0"; N].join(" "));
+            let (message, help) = match (N, words.len()) {
+                (1, count) => {
+                    let how = if count == 0 { "has no number".into() } else { format!("is `{}`, not one number", shown(text)) };
+                    (format!("{what} {how}"), format!("write one number, such as `{name}=\"1\"`"))
+                }
+                (_, count) => (
+                    format!("{what} has {count} of {N} numbers"),
+                    format!("write {N}, with blanks between them: `{name}=\"{}\"`", ["0"; N].join(" ")),
+                ),
+            };
             self.report(Code::WrongLength, span, message, "", help);
             return None;
         }

@@ -158,3 +158,58 @@ fn where_branches_are_too_many_followers_have_no_end_effector() {
     let (none, diagnostics) = import(&hand(""), &all);
     assert!(none.is_none() && diagnostics.iter().any(|fault| fault.code.name() == "several-tips"));
 }
+
+/// A lock that no posture of the file has is named with both values, also where the leader rests beside the chain.
+#[test]
+fn locks_against_their_couplings_are_named() {
+    let warnings = |locks: &[(&str, &str)], link: &str| {
+        let lock = locks.iter().map(|(joint, value)| ((*joint).into(), (*value).into())).collect();
+        let (imported, diagnostics) = import(&gripper(), &Options { lock, ..tip(link) });
+        assert!(imported.is_some());
+        let named = diagnostics.iter().filter(|warning| warning.code.name() == "changes-motion");
+        named.map(|warning| warning.message.clone()).collect::<Vec<_>>()
+    };
+    let against = |right: &str, by_file: &str| {
+        vec![format!("the joint `right` is locked at {right}, but its leader `left` puts it at {by_file}")]
+    };
+    // right = -1.5 left + 0.01
+    assert_eq!(warnings(&[("right", "0.04")], "right_link"), against("0.04", "0.01"));
+    assert_eq!(warnings(&[("right", "0.04"), ("left", "0.02")], "wrist_link"), against("0.04", "-0.02"));
+    for locks in [&[("right", "-0.02"), ("left", "0.02")][..], &[("right", "0.01")], &[("left", "0.02")]] {
+        assert!(warnings(locks, "wrist_link").is_empty(), "{locks:?}");
+    }
+    let frozen = "the joint `right` follows `left`, and is locked: 1 kg no longer move as in the file";
+    assert_eq!(warnings(&[("right", "0")], "left_link"), [frozen]);
+}
+
+/// Names that a language cannot take are replaced with a note, and equal names are refused.
+#[test]
+fn names_of_end_effectors_are_kept_or_noted() {
+    let with = |tips: &[(Option<&str>, &str)]| {
+        let tips = tips.iter().map(|(name, link)| (name.map(Into::into), (*link).into())).collect();
+        import(&gripper(), &Options { tips, ..Options::default() })
+    };
+    let (imported, _) = with(&[(Some("9"), "left_link"), (Some("right"), "right_link")]);
+    let Imported { yaml, report } = imported.expect("an arm");
+    let notes: Vec<&String> = report.lines().iter().filter(|line| line.contains("is called")).collect();
+    assert_eq!(notes, ["the end effector `9` is called `tip`, which every language takes"]);
+    assert_eq!(valid(&yaml).tips.len(), 2);
+    for tips in [[(Some("x"), "left_link"), (Some("x"), "right_link")], [(None, "left_link"), (None, "left_link")]] {
+        let (imported, diagnostics) = with(&tips);
+        assert!(imported.is_none() && diagnostics.iter().any(|fault| fault.code.name() == "duplicate-name"));
+    }
+}
+
+/// The options that leave fingers out name leaders alone: a follower in them would be locked against its coupling.
+#[test]
+fn fingers_that_follow_are_left_out_by_their_leader() {
+    let source = robot(&[
+        joint("wrist", "continuous", "base", ""),
+        joint("tool", "fixed", "wrist_link", ""),
+        joint("finger", "prismatic", "wrist_link", ""),
+        joint("other_finger", "prismatic", "wrist_link", "<mimic joint='finger' multiplier='-1'/>"),
+    ]);
+    let (none, diagnostics) = import(&source, &Options::default());
+    let help = diagnostics.iter().map(|fault| fault.help.as_str()).collect::<String>();
+    assert!(none.is_none() && help.contains("or where you say: `--lock finger=0`;"), "{help}");
+}

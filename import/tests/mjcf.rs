@@ -157,7 +157,11 @@ fn equalities_that_are_switched_off_are_none() {
             "<mujoco><option><flag {flag}/></option><worldbody><body><joint name='a'/>{body}<body><joint name='b'/>{body}</body></body></worldbody>\
              <equality><joint joint1='a' joint2='b'/></equality></mujoco>"
         );
-        imported(&text).yaml.contains("follows: {b: 1}")
+        let Imported { yaml, report } = imported(&text);
+        let note = "equalities that the model switches off are left out: `a` does not follow `b`";
+        let follows = yaml.contains("follows: {b: 1}");
+        assert_eq!(report.lines().iter().any(|line| line == note), !follows, "{:?}", report.lines());
+        follows
     };
     assert!(with("contact='disable'") && !with("equality='disable'") && !with("constraint='disable'"));
 }

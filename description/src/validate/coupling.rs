@@ -200,11 +200,23 @@ fn variable(
         let sizes: Option<Vec<i64>> = sums.iter().map(whole).collect();
         if sizes.is_none_or(|sizes| sizes.iter().sum::<i64>() > MOST_TURNS) {
             let place = leaders.first().map_or(joints[i].span, |leader| leader.span);
-            let message = format!("joint {} turns, and not by whole multiples of coordinates that turn", call(i, &joints[i]));
+            let total = sums.values().map(|factor| size(factor).to_f64()).sum::<f64>();
+            let whole = sums.iter().all(|(a, k)| turns(coordinates[*a]) && k.as_rational().is_some_and(|k| k.is_int()));
+            let name = call(i, &joints[i]);
+            let (message, label) = match whole {
+                true => (
+                    format!("joint {name} turns, and follows others by {total}, more than {MOST_TURNS} in all"),
+                    "sine and cosine would be polynomials of too high a degree",
+                ),
+                false => (
+                    format!("joint {name} turns, and not by whole multiples of coordinates that turn"),
+                    "sine and cosine would be no polynomials",
+                ),
+            };
             let help = format!(
                 "a joint that turns can follow others that turn, by whole numbers of at most {MOST_TURNS} in all: 1, -1, 2; a joint that slides can follow any"
             );
-            context.report(Code::FractionalFactor, place, message, "sine and cosine would be no polynomials", help);
+            context.report(Code::FractionalFactor, place, message, label, help);
             valid = false;
         } else if (&size(&constant) - &Number::from(LARGEST_ANGLE)).sign() == Ordering::Greater {
             let place = joints[i].offset.as_ref().map_or(joints[i].span, |offset| offset.span);

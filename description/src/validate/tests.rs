@@ -553,3 +553,25 @@ fn suggestions_lose_no_digit() {
     let said = helps(&arm(&[("{mass: 2}", either), ("a: 0.5", "a: 0.1"), ("d: 0.25", "d: 0")]));
     assert!(said.contains("check this tensor and the mass") && !said.contains("write"), "{said}");
 }
+
+/// A joint that turns by whole numbers too often is told by how much, not that they are no whole numbers.
+#[test]
+fn turns_are_counted_over_all_leaders() {
+    let text = |follows: &str| {
+        let joint = |name: &str, more: &str| {
+            format!("  - {{name: {name}, type: revolute, axis: [0, 0, 1], {more}link: {{mass: 1, com: [0, 0, 0], inertia: {{xx: 1, yy: 1, zz: 1}}}}}}\n")
+        };
+        let joints = [joint("a", ""), joint("b", &format!("follows: {{{follows}}}, ")), joint("c", "")].concat();
+        format!("name: r\nconvention: urdf\ngravity: [0, 0, -9.81]\njoints:\n{joints}")
+    };
+    for (follows, expected) in [
+        ("a: 20", Some("joint `b` turns, and follows others by 20, more than 16 in all")),
+        ("a: 9, c: -9", Some("joint `b` turns, and follows others by 18, more than 16 in all")),
+        ("a: 20, c: 0.5", Some("joint `b` turns, and not by whole multiples of coordinates that turn")),
+        ("a: 8, c: -8", None),
+    ] {
+        let (arm, diagnostics) = read(&Source::new("robot.yaml", text(follows)));
+        let found = diagnostics.iter().find(|fault| fault.code == Code::FractionalFactor).map(|fault| fault.message.as_str());
+        assert_eq!((arm.is_some(), found), (expected.is_none(), expected), "{follows}: {diagnostics:?}");
+    }
+}

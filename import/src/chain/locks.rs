@@ -17,6 +17,9 @@ use crate::values::Values;
 use crate::xml::{beginning, shown};
 use crate::Code;
 
+/// Followers of followers that a message looks through.
+const LONGEST_LINE: usize = 64;
+
 /// A joint that stands still.
 #[derive(Clone, Debug)]
 pub(crate) struct Lock {
@@ -37,8 +40,12 @@ impl Lock {
 /// The joints that stand still: those that the user locks, and their followers.
 pub(crate) struct Locks {
     by_joint: BTreeMap<usize, Lock>,
+    /// Joints that the user locks.
+    given: BTreeSet<usize>,
     /// Of each joint those that follow it, in the order of the file.
     followers: BTreeMap<usize, Vec<usize>>,
+    /// Of each follower its leader.
+    leaders: BTreeMap<usize, usize>,
     /// Joints that follow others with the multiplier 0.
     resting: BTreeSet<usize>,
 }
@@ -82,7 +89,9 @@ impl Locks {
                 followers.entry(leader).or_default().push(follower);
             }
         }
-        let mut locks = Locks { by_joint, followers, resting: BTreeSet::new() };
+        let given = by_joint.keys().copied().collect();
+        let leaders = followers.iter().flat_map(|(&leader, of)| of.iter().map(move |&follower| (follower, leader))).collect();
+        let mut locks = Locks { by_joint, given, followers, leaders, resting: BTreeSet::new() };
         let given = locks.by_joint.iter().map(|(joint, lock)| (*joint, lock.clone()));
         // A fixed joint holds its followers.
         let fixed = locks.followers.keys().filter(|&&leader| tree.joints[leader].kind == Kind::Fixed);
@@ -122,12 +131,40 @@ impl Locks {
 
     /// All joints that follow others.
     pub(super) fn all_followers(&self) -> BTreeSet<usize> {
-        self.followers.values().flatten().copied().collect()
+        self.leaders.keys().copied().collect()
     }
 
-    /// Whether a joint stands still because its multiplier is 0.
-    pub(super) fn rests(&self, joint: usize) -> bool {
-        self.resting.contains(&joint)
+    /// The joint that a joint follows.
+    pub(super) fn leader(&self, joint: usize) -> Option<usize> {
+        self.leaders.get(&joint).copied()
+    }
+
+    /// The joints that the user locks.
+    pub(super) fn given(&self) -> &BTreeSet<usize> {
+        &self.given
+    }
+
+    /// The joints that a lock holds beside its own: followers, theirs and so on, in the order of the file.
+    pub(super) fn held_with(&self, joint: usize) -> BTreeSet<usize> {
+        let (mut held, mut open) = (BTreeSet::new(), vec![joint]);
+        while let Some(leader) = open.pop() {
+            let further = self.followers(leader).iter().copied().filter(|follower| !self.given.contains(follower));
+            open.extend(further.filter(|&follower| held.insert(follower)));
+        }
+        held
+    }
+
+    /// The joint whose own position decides where a joint stands: the first one up the line that the user locks, or that follows none.
+    pub(super) fn decisive(&self, joint: usize) -> usize {
+        let mut at = joint;
+        // A longer line is no robot's, or a ring.
+        for _ in 0..LONGEST_LINE {
+            let Some(leader) = self.leader(at).filter(|_| !self.given.contains(&at) && !self.resting.contains(&at)) else {
+                return at;
+            };
+            at = leader;
+        }
+        joint
     }
 
     /// The lock of a joint.
@@ -212,14 +249,21 @@ pub(super) fn report_ring(tree: &Tree, way: &[usize], again: usize, span: Span, 
 
 /// Reports a joint whose leader does not exist.
 pub(super) fn report_unknown(tree: &Tree, follower: usize, leader: &str, span: Span, values: &mut Values<'_>) {
+    let name = shown(&tree.joints[follower].name);
+    let lock = format!("lock it where it is to stand: `--lock {name}=0`");
+    if leader.is_empty() {
+        let help = format!("write `joint=\"...\"` with the joint that it follows, or {lock}");
+        values.report(Code::MissingAttribute, span, format!("the `mimic` of joint `{name}` names no joint"), "", help);
+        return;
+    }
     let message = format!("`mimic` names `{}`, which is no joint of this file", shown(leader));
-    let (meant, name) = (tree.meant_joint(leader), shown(&tree.joints[follower].name));
-    let help = format!("{meant}; or lock it where it is to stand: `--lock {name}=0`");
+    let meant = tree.meant_joint(leader);
+    let help = if meant.ends_with('?') { format!("{meant} Or {lock}") } else { format!("{meant}; or {lock}") };
     values.report(Code::UnknownJoint, span, message, "", help);
 }
 
 /// Where a joint stands whose leader stands; faults are reported.
-fn follow(tree: &Tree, format: &dyn Format, follower: usize, leader: &Lock, values: &mut Values<'_>) -> Option<Lock> {
+pub(super) fn follow(tree: &Tree, format: &dyn Format, follower: usize, leader: &Lock, values: &mut Values<'_>) -> Option<Lock> {
     let joint = &tree.joints[follower];
     let (ratio, offset) = format.ratio(follower, values);
     let (by, times) = ratio.map_or_else(|| ("1".to_owned(), 1.0), |ratio| (ratio.text, ratio.value));

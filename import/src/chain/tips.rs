@@ -208,11 +208,15 @@ fn several(tree: &Tree, base: usize, locks: &Locks, groups: &BTreeMap<usize, Vec
     chains.sort_by_key(|(chain, _)| std::cmp::Reverse(chain.joints));
     let tools = chains.iter().map(|(chain, _)| *chain).filter(|chain| !is_finger(tree, chain.last));
     let tool = tools.filter_map(|chain| Some((names::tool(&tree.links[chain.link].name)?, chain))).min_by_key(|(rank, _)| *rank);
-    let fingers: Vec<&str> = chains
-        .iter()
-        .filter(|(chain, _)| is_finger(tree, chain.last))
-        .map(|(chain, _)| tree.joints[chain.last].name.as_str())
-        .collect();
+    // A follower rests with its leader.
+    let mut fingers: Vec<usize> = Vec::new();
+    for (chain, _) in chains.iter().filter(|(chain, _)| is_finger(tree, chain.last)) {
+        let decisive = locks.decisive(chain.last);
+        let joint = if is_finger(tree, decisive) && tree.joints[decisive].kind.moves() { decisive } else { chain.last };
+        if !fingers.contains(&joint) {
+            fingers.push(joint);
+        }
+    }
     let longest = chains[0].0;
     let branch = before_branches(tree, base, longest.link, locks);
     let other = chains.iter().map(|(chain, _)| *chain).find(|chain| !is_finger(tree, chain.last));
@@ -241,7 +245,8 @@ fn several(tree: &Tree, base: usize, locks: &Locks, groups: &BTreeMap<usize, Vec
     let message = format!("several links may be the tip: {}{more}", all.join(", "));
     let mut help = format!("choose one: `--tip {}` ({})", shown(&tree.links[first].name), number(joints));
     if !fingers.is_empty() && first != longest.link {
-        let locks: Vec<String> = fingers.iter().take(NAMED).map(|name| format!("`--lock {}=0`", shown(name))).collect();
+        let locks: Vec<String> =
+            fingers.iter().take(NAMED).map(|&joint| format!("`--lock {}=0`", shown(&tree.joints[joint].name))).collect();
         help = format!("{help}; what moves beside it stands at 0, or where you say: {}", locks.join(" "));
     }
     if let Some((link, joints)) = branch.filter(|&(link, _)| link != first) {

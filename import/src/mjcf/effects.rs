@@ -145,6 +145,7 @@ pub(super) fn check(mjcf: &Mjcf<'_, '_>, extent: &Extent<'_>, diagnostics: &mut 
     let root = mjcf.root;
     let moves = |name: &str| extent.tree.joint(name).is_some_and(|joint| extent.moving.contains(&joint));
     let carrier = |link: Option<usize>| link.and_then(|link| extent.carriers.get(&link).copied());
+    equalities::refuse_switches(mjcf, diagnostics);
     for equality in equalities::in_force(mjcf) {
         if equalities::is_taken(mjcf, equality, extent.tree) {
             continue;
@@ -152,9 +153,11 @@ pub(super) fn check(mjcf: &Mjcf<'_, '_>, extent: &Extent<'_>, diagnostics: &mut 
         let body = |name: &str| carrier(equality.attribute(name).and_then(|name| extent.tree.link(name)));
         let site = |name: &str| carrier(equality.attribute(name).and_then(|name| mjcf.sites.get(name).copied()));
         let joints = ["joint1", "joint2"].into_iter().filter_map(|name| equality.attribute(name)).any(moves);
-        if joints || body("body1") != body("body2") || site("site1") != site("site2") {
-            let (message, help) = equalities::refused(equality);
-            refuse(place(equality), message, &help, diagnostics);
+        let follower = equality.attribute("joint1").and_then(|name| extent.tree.joint(name));
+        if joints && equality.has_tag_name("joint") && follower.is_some_and(|follower| extent.held.contains(&follower)) {
+            equalities::warn_of_held(equality, diagnostics);
+        } else if joints || body("body1") != body("body2") || site("site1") != site("site2") {
+            equalities::refuse(mjcf, equality, extent.tree, diagnostics);
         }
     }
     for tendon in sections(root, "tendon").flat_map(|n| n.children()).filter(Node::is_element) {

@@ -6,6 +6,7 @@
 
 use std::collections::BTreeMap;
 
+use armgen_codegen::diagnostic::{Diagnostic, Diagnostics};
 use roxmltree::Node;
 
 use super::{opposite, sections, Mjcf};
@@ -13,7 +14,11 @@ use crate::number::Decimal;
 use crate::pose::factor;
 use crate::tree::Tree;
 use crate::values::Values;
-use crate::xml::{attribute, shown};
+use crate::xml::{attribute, place, shown};
+use crate::Code;
+
+/// The most coefficients of a polynomial.
+const COEFFICIENTS: usize = 5;
 
 /// The element that makes a joint follow another one.
 pub(super) struct Equality<'a, 'i> {
@@ -40,10 +45,10 @@ pub(super) fn of_joints<'a, 'i>(mjcf: &Mjcf<'a, 'i>, tree: &Tree) -> BTreeMap<us
     found
 }
 
-/// Whether the coefficients of powers are 0.
-fn is_linear(equality: Node<'_, '_>) -> bool {
+/// Whether no coefficient of a power is a number other than 0. Words that are no numbers are reported where the joint follows.
+pub(super) fn is_linear(equality: Node<'_, '_>) -> bool {
     let words = equality.attribute("polycoef").unwrap_or_default().split_ascii_whitespace();
-    words.skip(2).all(|word| word.parse::<f64>() == Ok(0.0))
+    !words.skip(2).any(|word| word.parse::<f64>().is_ok_and(|value| value != 0.0 && value.is_finite()))
 }
 
 /// Whether an equality is that of a follower.
@@ -60,7 +65,14 @@ pub(super) fn ratio(
     values: &mut Values<'_>,
 ) -> (Option<Decimal>, Decimal) {
     let coefficients = attribute(equality.node, "polycoef");
-    let mut coefficients = coefficients.map_or_else(Vec::new, |(text, span)| values.words(text, span, "polycoef")).into_iter();
+    if let Some((text, span)) = coefficients {
+        let count = text.split_ascii_whitespace().count();
+        if count > COEFFICIENTS {
+            let message = format!("`polycoef` has {count} numbers, more than {COEFFICIENTS}");
+            values.report(Code::WrongLength, span, message, "", "write the offset, the factor, and nothing else that is not 0");
+        }
+    }
+    let mut coefficients = coefficients.map_or_else(Vec::new, |(text, span)| values.words(text, span, "`polycoef`")).into_iter();
     let (constant, multiplier) = (coefficients.next().unwrap_or_else(Decimal::zero), coefficients.next());
     let mut reference = |joint: usize| {
         let element = mjcf.joints[joint].joint?;
@@ -83,15 +95,67 @@ pub(super) fn ratio(
     (multiplier, offset)
 }
 
-/// Why an equality of the arm is refused, and what helps.
-pub(super) fn refused(equality: Node<'_, '_>) -> (String, String) {
+/// Joints that an equality couples and a switch sets free, each with its leader, for a note.
+pub(super) fn switched_off(mjcf: &Mjcf<'_, '_>, tree_names: &[&str]) -> Option<String> {
+    let all = sections(mjcf.root, "equality").flat_map(|section| section.children()).filter(|node| node.has_tag_name("joint"));
+    let off = all.filter(|node| mjcf.disabled.equality || node.attribute("active") == Some("false"));
+    let named = |node: Node<'_, '_>| {
+        let follower = node.attribute("joint1").filter(|name| tree_names.contains(name))?;
+        Some(match node.attribute("joint2") {
+            Some(leader) => format!("`{}` does not follow `{}`", shown(follower), shown(leader)),
+            None => format!("nothing holds `{}`", shown(follower)),
+        })
+    };
+    let free: Vec<String> = off.filter_map(named).collect();
+    (!free.is_empty()).then(|| format!("equalities that the model switches off are left out: {}", free.join(", ")))
+}
+
+/// Warns of an equality that a lock of its first joint replaces, while the second one moves.
+pub(super) fn warn_of_held(equality: Node<'_, '_>, diagnostics: &mut Diagnostics) {
+    let [follower, leader] = ["joint1", "joint2"].map(|name| shown(equality.attribute(name).unwrap_or_default()));
+    let how = if is_linear(equality) { "" } else { " by a polynomial" };
+    let message =
+        format!("the joint `{follower}` follows `{leader}`{how}, and is locked: what it carries no longer moves as in the file");
+    let help = "torques and accelerations are not those of the file, nor are frames behind that joint";
+    diagnostics.push(Diagnostic::new(Code::ChangesMotion, place(equality), message, "not used", help));
+}
+
+/// Reports words of `active` other than its two.
+pub(super) fn refuse_switches(mjcf: &Mjcf<'_, '_>, diagnostics: &mut Diagnostics) {
+    for node in sections(mjcf.root, "equality").flat_map(|section| section.children()) {
+        if let Some((word, span)) = attribute(node, "active").filter(|(word, _)| !matches!(*word, "true" | "false")) {
+            let message = format!("`active` of an equality is `{}`", shown(word));
+            diagnostics.push(Diagnostic::new(Code::MjcfFeature, span, message, "", "write `true` or `false`"));
+        }
+    }
+}
+
+/// Reports an equality of the arm that no joint takes.
+pub(super) fn refuse(mjcf: &Mjcf<'_, '_>, equality: Node<'_, '_>, tree: &Tree, diagnostics: &mut Diagnostics) {
     let what = equality.tag_name().name();
+    let of_joints = what == "joint";
+    for name in ["joint1", "joint2"] {
+        let Some((joint, span)) = attribute(equality, name).filter(|_| of_joints) else { continue };
+        if tree.joint(joint).is_none() {
+            let message = format!("an equality names `{}`, which is no joint of this file", shown(joint));
+            diagnostics.push(Diagnostic::new(Code::UnknownJoint, span, message, "", tree.meant_joint(joint)));
+            return;
+        }
+    }
     let joint = |name: &str| equality.attribute(name).map(shown);
-    match (what, joint("joint1"), joint("joint2")) {
-        ("joint", Some(first), None) => {
+    let taken = equality.attribute("joint1").and_then(|name| mjcf.equalities.get(&tree.joint(name)?));
+    let (message, help) = match (joint("joint1"), joint("joint2"), taken) {
+        (Some(first), None, _) if of_joints => {
             (format!("an equality holds the joint `{first}`"), format!("take it out, and hold the joint with `--lock {first}=VALUE`"))
         }
-        ("joint", Some(first), Some(second)) if !is_linear(equality) => (
+        (Some(first), Some(_), Some(taken)) if of_joints => {
+            let message = format!("the joint `{first}` follows `{}` already", shown(taken.leader_name));
+            let help = format!("a joint follows one other joint: take one of the two equalities out, or hold it with `--lock {first}=VALUE`");
+            let fault = Diagnostic::new(Code::MjcfFeature, place(equality), message, "not taken", help);
+            diagnostics.push(fault.also(place(taken.node), "taken"));
+            return;
+        }
+        (Some(first), Some(second), None) if of_joints => (
             format!("the joint `{first}` follows `{second}` by a polynomial that is not linear"),
             format!("a joint follows others by a factor and an offset: take it out, or hold the joint with `--lock {first}=VALUE`"),
         ),
@@ -100,5 +164,6 @@ pub(super) fn refused(equality: Node<'_, '_>) -> (String, String) {
             "an arm is a tree of joints, which move freely or follow one other joint: take it out, or hold what it is about with `--lock JOINT=VALUE`"
                 .into(),
         ),
-    }
+    };
+    diagnostics.push(Diagnostic::new(Code::MjcfFeature, place(equality), message, "", help));
 }
