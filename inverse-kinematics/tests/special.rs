@@ -120,7 +120,7 @@ in_both_scalars! {
             let found = general_arm(&ways, &arm.at(&q), arm.length());
             let sure = !found.near && !found.continuum && found.found().iter().all(|branch| !branch.double);
             doubtful += usize::from(!sure);
-            assert!(!sure || found.count % 2 == 0, "{q:?}");
+            assert!(!sure || found.count.is_multiple_of(2), "{q:?}");
             let values: Vec<_> = q.iter().enumerate().map(|(i, q)| arm.value(i, *q)).collect();
             let near = if SINGLE { 5e-2 } else { 1e-5 };
             assert!(!sure || found.found().iter().any(|other| apart(&other.joints, &values) < near), "{q:?}: lost");
