@@ -1,5 +1,7 @@
 //! The estimation: delays, friction, drive gains, base parameters and their intervals, from filtered pieces of logs.
 
+mod instruments;
+
 use nalgebra::{DMatrix, DVector};
 
 use crate::arm::Arm;

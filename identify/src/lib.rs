@@ -16,7 +16,6 @@ pub mod excite;
 pub mod finding;
 pub mod fit;
 pub mod identify;
-mod instruments;
 pub mod judge;
 pub mod log;
 pub mod options;

@@ -156,7 +156,7 @@ const IDENTIFY: Layers = &[
     ("log", &["finding"]),
     ("prepare", &["arm", "log", "signal"]),
     ("options", &["log", "prepare"]),
-    ("estimate", &["arm", "fit", "options", "prepare"]),
+    ("estimate", &["arm", "fit", "options", "prepare", "signal"]),
     ("suspect", &["arm", "estimate", "finding", "fit", "log", "signal"]),
     ("judge", &["arm", "log", "prepare", "signal"]),
     ("identify", &["arm", "body", "estimate", "finding", "fit", "judge", "log", "options", "prepare", "signal", "suspect"]),
