@@ -13,10 +13,15 @@ import { links, variables } from "./kinematics.mjs";
 import { Ball, Box, Cylinder } from "./solids.mjs";
 import { along, column, compose, cross, direct, norm, origin, perpendicular, scale } from "./vector.mjs";
 
+/** The rows of all joints, with all that a page has of them. @param {any} data @returns {any[]} */
+function rows(data) {
+    return links(data);
+}
+
 /** How long an arm is, m: the sum of the lengths of its rows and of what its slides can add. @param {any} data */
 export function size(data) {
     let length = 0;
-    for (const row of links(data)) {
+    for (const row of rows(data)) {
         for (const frame of [...row.before, ...row.after]) length += norm(origin(frame));
         if (row.type === "prismatic" && row.limits) length += Math.max(...row.limits.map(Math.abs)) / 2;
     }
@@ -28,7 +33,7 @@ export function size(data) {
 
 /** The corners of a row: where it begins, where it bends, where it ends, and its joint's place and axis. @param {any} data @param {number} i @param {number[][]} start @param {number[][]} end @param {number} q */
 function bend(data, i, start, end, q) {
-    const row = links(data)[i];
+    const row = rows(data)[i];
     if (data.convention === "urdf") {
         const before = row.before.reduce(compose, start);
         const at = origin(before);
@@ -53,7 +58,8 @@ export class Arm {
         this.size = size(data);
         const [link, joint] = [this.size * 0.016, this.size * 0.028];
         this.half = this.size * 0.045;
-        this.rows = links(data).map((row) => {
+        /** @type {any[]} */
+        this.rows = rows(data).map((row) => {
             const prismatic = row.type === "prismatic";
             return {
                 prismatic,
@@ -65,6 +71,7 @@ export class Arm {
         });
         this.tool = new Cylinder(link * 0.7, `link ${kind}`);
         this.base = new Cylinder(this.size * 0.06, `base ${kind}`);
+        /** @type {(Ball | Box | Cylinder)[]} */
         this.solids = [this.base, this.tool];
         for (const row of this.rows) {
             this.solids.push(...row.segments, row.ball, row.joint);
@@ -76,7 +83,7 @@ export class Arm {
 
     /** The frame that a row starts from: where arms branch, in that of its parent. @param {number} i @param {number[][][]} frames */
     start(i, frames) {
-        const { branch } = links(this.data)[i];
+        const { branch } = rows(this.data)[i];
         if (branch) return branch.parent === null ? branch.start : compose(frames[branch.parent], branch.start);
         return i === 0 ? this.data.base : frames[i - 1];
     }
@@ -100,7 +107,7 @@ export class Arm {
                 const third = cross(axis, side);
                 const carrier = moved === 0 ? points[1] : points[2];
                 const rest = along(carrier, -q[i], axis);
-                const [low, high] = links(data)[i].limits ?? [Math.min(0, q[i]), Math.max(0, q[i])];
+                const [low, high] = rows(data)[i].limits ?? [Math.min(0, q[i]), Math.max(0, q[i])];
                 const middle = along(rest, (low + high) / 2, axis);
                 const frame = (at) => [0, 1, 2].map((k) => [side[k], third[k], axis[k], at[k]]);
                 row.rail.place(frame(middle), [this.half * 0.18, this.half * 0.18, (high - low) / 2 + this.half * 0.5]);
