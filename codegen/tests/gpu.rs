@@ -145,7 +145,8 @@ fn the_front_end_of_hip_takes_the_header() {
 fn compilers_for_gpus_take_all_robots() {
     let (nvcc, hip) = (nvcc(), hip());
     let robots = std::fs::read_dir(workspace().join("robots")).expect("the robots").map(|file| file.expect("a file").path());
-    for path in robots.chain([workspace().join("robot.yaml")]) {
+    let descriptions = robots.filter(|path| path.extension().is_some_and(|kind| kind == "yaml"));
+    for path in descriptions.chain([workspace().join("robot.yaml")]) {
         let stem = path.file_stem().expect("a name").to_string_lossy().into_owned();
         for (scalar, bits) in [(Scalar::F64, 64), (Scalar::F32, 32)] {
             let generated = robot(&path, scalar, false);
