@@ -311,7 +311,8 @@ impl<'a> Estimate<'a> {
                     delay += 0.5 * step * (a - c) / bend;
                 }
             }
-            self.delays[j] = if costs[best] < WORTH * WORTH * cost(0.0) { delay } else { 0.0 };
+            let without = costs[DELAYS.start().unsigned_abs() as usize];
+            self.delays[j] = if costs[best] < WORTH * WORTH * without { delay } else { 0.0 };
         }
     }
 

@@ -204,8 +204,8 @@ impl Header {
             let signal = if name == "t" {
                 Some(Signal::Time)
             } else {
-                let known = PREFIXES.iter().filter(|(prefix, _)| format.with_reference || *prefix != "qr_");
-                { known }.find_map(|(prefix, signal)| {
+                let mut known = PREFIXES.iter().filter(|(prefix, _)| format.with_reference || *prefix != "qr_");
+                known.find_map(|(prefix, signal)| {
                     let joint = name.strip_prefix(prefix)?;
                     let found = joints.iter().position(|known| *known == joint);
                     if found.is_none() {
