@@ -185,7 +185,7 @@ pub fn identify(arm: &Arm, inputs: &[Input], options: &Options, findings: &mut F
     }
     let (equations, _) = estimate.equations(None);
     estimate.fit(&equations);
-    if suspect::torques(&estimate, &logs[0].name, findings) {
+    if suspect::torques(&estimate, &logs[0], findings) {
         return None;
     }
     let turned = turned_throughout(&estimate);
@@ -245,9 +245,8 @@ pub fn identify(arm: &Arm, inputs: &[Input], options: &Options, findings: &mut F
         for (j, delay) in estimate.delays.iter().enumerate().filter(|(_, delay)| Estimate::is_last_delay(**delay)) {
             let text = format!("the delay of joint `{}`, {:.1} ms, is at the end of its range", arm.joints[j].name, 1e3 * delay);
             let help = "bring the stamps of torques and positions together, or give `delay` in the options; noise of positions leads here, too: log rates (`dq_JOINT`)";
-            findings.push(
-                Finding::new(Code::DelayAtLimit, &logs[0].name, text, help).in_column(format!("tau_{}", arm.joints[j].name)),
-            );
+            let column = inputs[0].log.effort_column(&arm.joints[j].name);
+            findings.push(Finding::new(Code::DelayAtLimit, &inputs[0].log.name, text, help).in_column(column));
         }
     }
     estimate.along_reference = along_reference.as_deref();
@@ -684,7 +683,7 @@ fn poor_fits(arm: &Arm, inputs: &[Input], found: &Identified, findings: &mut Fin
             let text = format!("the model leaves {:.0} % of the torque of joint `{name}`", 100.0 * relative);
             let help =
                 "look at the direction of gravity, at `base`, at a load that the options do not name, and at the unit of torque";
-            let column = format!("{}_{name}", if input.log.is_current { "current" } else { "tau" });
+            let column = input.log.effort_column(name);
             findings.push(Finding::new(Code::PoorFit, &input.log.name, text, help).in_column(column));
         }
     }

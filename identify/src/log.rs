@@ -79,6 +79,13 @@ pub struct Log {
     pub unused: Vec<String>,
 }
 
+impl Log {
+    /// The column of the torque, or current, of a joint.
+    pub fn effort_column(&self, joint: &str) -> String {
+        format!("{}{joint}", if self.is_current { "current_" } else { "tau_" })
+    }
+}
+
 /// What a column holds.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 enum Signal {

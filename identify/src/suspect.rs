@@ -38,7 +38,6 @@ pub fn signals(arm: &Arm, log: &Log, findings: &mut Findings) -> Vec<Vec<Range<f
     for i in 0..n {
         let name = &arm.joints[i].name;
         let (least, most) = range(&log.q[i]);
-        let effort = if log.is_current { "current" } else { "tau" };
         let frozen_position = frozen(&log.q[i], &log.t);
         let moves_there = |stretch: &Range<usize>| {
             let Some(dq) = &log.dq else { return false };
@@ -66,10 +65,10 @@ pub fn signals(arm: &Arm, log: &Log, findings: &mut Findings) -> Vec<Vec<Range<f
         let (least, most) = range(&log.effort[i]);
         match frozen(&log.effort[i], &log.t) {
             Some(stretch) if least < most && !is_extreme(log.effort[i][stretch.start], least, most) => {
-                stuck(findings, format!("{effort}_{name}"), stretch, "while other columns change");
+                stuck(findings, log.effort_column(name), stretch, "while other columns change");
             }
             Some(_) if least == most && log.q.iter().any(|q| range(q).1 - range(q).0 > STILL) => {
-                stuck(findings, format!("{effort}_{name}"), 0..log.t.len(), "while other columns change");
+                stuck(findings, log.effort_column(name), 0..log.t.len(), "while other columns change");
             }
             _ => {}
         }
@@ -139,7 +138,7 @@ fn clipped(arm: &Arm, log: &Log, i: usize, flawed: &mut Vec<Range<f64>>, finding
         } else {
             (Severity::Warning, "these samples do not count")
         };
-        let column = format!("{}_{}", if log.is_current { "current" } else { "tau" }, joint.name);
+        let column = log.effort_column(&joint.name);
         let finding = Finding::new(Code::ClippedTorque, &log.name, text, help).at(log.lines[first] as usize, 0);
         findings.push(finding.in_column(column).as_bad_as(severity));
     }
@@ -262,7 +261,7 @@ fn rates(arm: &Arm, log: &Log, period: f64, findings: &mut Findings) {
 }
 
 /// A fit that another order or another sign of the torques makes three times better; that is reported, and whether it was.
-pub fn torques(estimate: &Estimate<'_>, log: &str, findings: &mut Findings) -> bool {
+pub fn torques(estimate: &Estimate<'_>, log: &Log, findings: &mut Findings) -> bool {
     let n = estimate.arm.dof();
     let (equations, _) = estimate.equations(None);
     let active = &estimate.active;
@@ -308,10 +307,10 @@ pub fn torques(estimate: &Estimate<'_>, log: &str, findings: &mut Findings) -> b
             best = (found, Some(signs));
         }
     }
-    let name = |i: usize| estimate.arm.joints[i].name.clone();
+    let name = |i: usize| estimate.arm.joints[i].name.as_str();
     if let (found, Some(signs)) = &best {
         if better(*found) {
-            let turned: Vec<String> = (0..n).filter(|&j| signs[j] < 0.0).map(|j| format!("tau_{}", name(j))).collect();
+            let turned: Vec<String> = (0..n).filter(|&j| signs[j] < 0.0).map(|j| log.effort_column(name(j))).collect();
             let text = format!(
                 "the residual falls to {:.0} % if the sign of {} is turned",
                 100.0 * (found / before).sqrt(),
@@ -319,7 +318,7 @@ pub fn torques(estimate: &Estimate<'_>, log: &str, findings: &mut Findings) -> b
             );
             let help = "torques act from the link before on the link behind, along the joint axis: turn the sign, or the axis";
             let column = turned[0].clone();
-            findings.push(Finding::new(Code::SignSuspected, log, text, help).in_column(column));
+            findings.push(Finding::new(Code::SignSuspected, &log.name, text, help).in_column(column));
             return true;
         }
     }
@@ -354,13 +353,15 @@ pub fn torques(estimate: &Estimate<'_>, log: &str, findings: &mut Findings) -> b
     }
     if let (found, Some(order)) = &best {
         if better(*found) {
-            let moved: Vec<String> =
-                (0..n).filter(|&j| order[j] != j).map(|j| format!("tau_{} is that of {}", name(order[j]), name(j))).collect();
+            let moved: Vec<String> = (0..n)
+                .filter(|&j| order[j] != j)
+                .map(|j| format!("{} is that of {}", log.effort_column(name(order[j])), name(j)))
+                .collect();
             let text =
                 format!("the residual falls to {:.0} % in another order: {}", 100.0 * (found / before).sqrt(), moved.join(", "));
             let help = "rename the columns under `columns` of the options";
-            let column = format!("tau_{}", name((0..n).find(|&j| order[j] != j).unwrap_or(0)));
-            findings.push(Finding::new(Code::JointOrder, log, text, help).in_column(column));
+            let column = log.effort_column(name((0..n).find(|&j| order[j] != j).unwrap_or(0)));
+            findings.push(Finding::new(Code::JointOrder, &log.name, text, help).in_column(column));
             return true;
         }
     }

@@ -5,7 +5,7 @@ use armgen_identify::arm::Arm;
 use armgen_identify::finding::{Code, Findings};
 use armgen_identify::identify::{identify, Input};
 use armgen_identify::log::{read, Format};
-use armgen_identify::options::{Gains, Options};
+use armgen_identify::options::Options;
 use armgen_identify::suspect;
 
 use crate::arms::{arm, csv, format, motion, Motion, Random, ELBOW};
@@ -165,6 +165,14 @@ fn torques_under_other_names_and_signs_are_named() {
     // Torques that come 60 ms later than their positions.
     let late = of(&plain, &|m| (6..m.t.len()).rev().for_each(|k| m.tau[3 * k + 2] = m.tau[3 * (k - 6) + 2]));
     check(&late, Code::DelayAtLimit, Warning, 0, "tau_elbow");
+    // Columns of currents are named as they are in the log.
+    let (mut input, mut findings) = spoilt(&arm, |m| (0..m.t.len()).for_each(|k| m.tau.swap(3 * k, 3 * k + 1)));
+    input.log.is_current = true;
+    for (joint, effort) in arm.joints.iter().zip(&mut input.log.effort) {
+        effort.iter_mut().for_each(|x| *x /= joint.gain.unwrap_or(1.0));
+    }
+    identify(&arm, &[input], &plain, &mut findings);
+    check(&findings, Code::JointOrder, Error, 0, "current_base");
     let options = Options { keep: vec!["elbw.friction.offset".into()], delay: Some(vec![0.0; 2]), ..Options::default() };
     let unfit = of(&options, &|_| {});
     check(&unfit, Code::BadOptions, Error, 0, "");
