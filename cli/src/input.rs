@@ -4,7 +4,7 @@ use std::path::Path;
 
 use armgen_codegen::catalogue::Absent;
 use armgen_codegen::diagnostic::Diagnostics;
-use armgen_codegen::kinds::Scalar;
+use armgen_codegen::kinds::{Feature, Scalar};
 use armgen_codegen::manipulator::Manipulator;
 use armgen_codegen::schedule::Selection;
 use armgen_codegen::source::Source;
@@ -102,7 +102,7 @@ pub(crate) fn package(folder: &Path) -> Result<Source, u8> {
     })
 }
 
-/// The exit code, after a message, where joints are coupled or have smooth friction: for commands that need a coordinate of each joint and the
+/// The exit code, after a message, where joints or motors are coupled, or joints have smooth friction: for commands that need a coordinate of each joint and the
 /// signs of rates.
 pub(crate) fn without_coupling(source: &Source, manipulator: &Manipulator, command: &str) -> Result<(), u8> {
     if let Some(joint) = manipulator.joints.iter().find(|joint| joint.smooth.is_some()) {
@@ -113,8 +113,15 @@ pub(crate) fn without_coupling(source: &Source, manipulator: &Manipulator, comma
         ));
         return Err(FAULTY);
     }
-    let Some(joint) = manipulator.coupled_joint() else { return Ok(()) };
     let name = source.name();
+    if let Some(joint) = manipulator.joints.iter().find(|joint| joint.has(Feature::CoupledMotor)) {
+        terminal::error(&format!(
+            "{name}: the motor of joint `{}` turns with several joints, and `armgen {command}` takes friction of single joints alone; leave out `coupling`",
+            joint.name
+        ));
+        return Err(FAULTY);
+    }
+    let Some(joint) = manipulator.coupled_joint() else { return Ok(()) };
     terminal::error(&format!(
         "{name}: joint `{}` is coupled with others, and `armgen {command}` does not take coupled joints",
         joint.name

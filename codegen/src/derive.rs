@@ -11,6 +11,7 @@ pub mod determinant;
 pub mod factors;
 mod friction;
 pub mod model;
+pub mod motion;
 pub mod newton_euler;
 pub mod parameters;
 pub mod passes;
@@ -18,6 +19,7 @@ pub mod plan;
 pub mod quantities;
 pub mod quantity;
 pub mod regressor;
+mod rotors;
 mod wrench;
 
 pub use derivation::Derivation;

@@ -11,7 +11,8 @@ use std::ops::Range;
 
 use crate::derive::arm::Arm;
 use crate::derive::constants::find_field;
-use crate::derive::newton_euler::{inverse_dynamics, Motion};
+use crate::derive::motion::Motion;
+use crate::derive::newton_euler::inverse_dynamics;
 use crate::derive::parameters::{ParameterVector, View};
 use crate::derive::plan::Plan;
 use crate::derive::quantities::{inertia, kinematics};

@@ -205,6 +205,15 @@ pub struct Coupling {
     pub offsets: Vec<Number>,
 }
 
+/// The speeds of the rotors of motors beside the links that carry them.
+#[derive(Clone, Debug)]
+pub struct MotorRates {
+    /// Names of the joints with a motor.
+    pub joints: Vec<String>,
+    /// Rotor speed over the rate of each coordinate, a row for each motor.
+    pub rates: Vec<Vec<Number>>,
+}
+
 /// All that the emitted module holds.
 #[derive(Clone, Debug)]
 pub struct Module {
@@ -214,6 +223,8 @@ pub struct Module {
     pub joints: Vec<Joint>,
     /// The coupling of joints, if joints are coupled.
     pub coupling: Option<Coupling>,
+    /// The speeds of motors, if a motor turns with several coordinates or with none of its own.
+    pub motors: Option<MotorRates>,
     /// Acceleration of free fall in the base frame, m/s².
     pub gravity: [Number; 3],
     /// Whether that is an argument of the functions which it enters, and `gravity` its nominal value.
@@ -282,6 +293,7 @@ impl Module {
             Operand::Step(_) | Operand::Input(_) => None,
         });
         let parameters = self.parameters.iter().chain(&self.base_set).map(|parameter| &parameter.nominal);
-        constants.chain(parameters).find(|value| !self.scalar.holds(value))
+        let motors = self.motors.iter().flat_map(|motors| motors.rates.iter().flatten());
+        constants.chain(parameters).chain(motors).find(|value| !self.scalar.holds(value))
     }
 }

@@ -15,7 +15,7 @@ use crate::manipulator;
 use crate::parallel::parallel_map;
 
 pub use crate::pass::{Pass, Passes};
-use crate::program::{Cost, Coupling, EndEffector, Function, Joint, Module, Operand, Operation, Output, Step, Trig};
+use crate::program::{Cost, Coupling, EndEffector, Function, Joint, Module, MotorRates, Operand, Operation, Output, Step, Trig};
 use crate::ring::count::DIVISION_COST;
 use crate::ring::{Elementary, ExprId, Node, Pool, Symbol};
 use crate::Model;
@@ -66,6 +66,7 @@ pub fn module(model: &Model, options: &Options) -> Module {
         name: manipulator.name.clone(),
         joints: manipulator.coordinates().into_iter().map(joint).collect(),
         coupling: manipulator.coupling.as_ref().map(|coupling| coupled(manipulator, coupling)),
+        motors: motors(manipulator),
         gravity: manipulator.gravity.each_ref().map(|g| nominal(manipulator, g)),
         gravity_is_argument: manipulator.gravity_is_argument,
         features: manipulator.features(),
@@ -116,6 +117,12 @@ fn coupled(manipulator: &manipulator::Manipulator, coupling: &manipulator::Coupl
         factors: coupling.variables.iter().map(row).collect(),
         offsets: coupling.variables.iter().map(|variable| variable.offset.clone()).collect(),
     }
+}
+
+fn motors(manipulator: &manipulator::Manipulator) -> Option<MotorRates> {
+    let (joints, rates): (Vec<_>, Vec<_>) =
+        manipulator.motor_rates().into_iter().map(|(joint, rates)| (joint.name.clone(), rates)).unzip();
+    (!joints.is_empty()).then_some(MotorRates { joints, rates })
 }
 
 /// The cheapest program of a quantity; the first of equals, so that the choice is the same everywhere.

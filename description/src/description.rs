@@ -296,13 +296,17 @@ pub struct MotorDescription {
     pub key: Span,
     /// Gear ratio.
     pub ratio: Value,
+    /// The joint whose link carries it, or `base`; if absent, the link before.
+    pub on: Option<Spanned<String>>,
+    /// Further joints whose rates it spins with.
+    pub coupling: Option<LeadersDescription>,
     /// Inertia about the spin axis.
     pub inertia: Value,
     /// Mass.
     pub mass: Value,
-    /// Position in the previous link's frame.
+    /// Position in the frame of the link that carries it.
     pub position: Option<Spanned<[Value; 3]>>,
-    /// Spin axis in the previous link's frame.
+    /// Spin axis in that frame.
     pub axis: Option<Spanned<[Value; 3]>>,
     /// Viscous friction at the rotor.
     pub viscous: Value,

@@ -212,12 +212,16 @@ codes! {
         NameTaken Error "name-taken",
         /// A key of a single end effector beside `tips`.
         TipsBesideTool Error "tips-beside-tool",
-        /// `follows` or `adds` names no joint.
+        /// `follows`, `adds` or the `coupling` of a motor names no joint, or the motor's own.
         UnknownLeader Error "unknown-leader",
         /// Joints that follow each other.
         RingOfFollowers Error "ring-of-followers",
-        /// A factor of 0 in `follows` or `adds`.
+        /// A factor of 0 in `follows`, `adds` or the `coupling` of a motor.
         ZeroFactor Error "zero-factor",
+        /// `on` of a motor names no joint.
+        UnknownCarrier Error "unknown-carrier",
+        /// `on` of a motor without `axis`.
+        CarrierWithoutAxis Error "carrier-without-axis",
         /// A joint that turns and follows others by no whole number.
         FractionalFactor Error "fractional-factor",
         /// `follows` and `adds` at one joint.

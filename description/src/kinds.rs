@@ -109,10 +109,18 @@ pub enum Feature {
     Stribeck,
     /// Friction that grows with the load.
     LoadFriction,
+    /// A motor that spins with several joints.
+    CoupledMotor,
 }
 
 impl Feature {
     /// Every feature.
-    pub const ALL: [Feature; 5] =
-        [Feature::Spring, Feature::OffsetOrCubic, Feature::SmoothFriction, Feature::Stribeck, Feature::LoadFriction];
+    pub const ALL: [Feature; 6] = [
+        Feature::Spring,
+        Feature::OffsetOrCubic,
+        Feature::SmoothFriction,
+        Feature::Stribeck,
+        Feature::LoadFriction,
+        Feature::CoupledMotor,
+    ];
 }

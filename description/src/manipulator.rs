@@ -184,7 +184,7 @@ pub struct Joint {
     pub limits: Limits,
     /// The bodies that make up the link, in the *link frame*: its own, then those that are fixed to it.
     pub link: Vec<PlacedBody>,
-    /// The rotor that drives this joint, on the parent link.
+    /// The rotor that drives this joint.
     pub motor: Option<Motor>,
     /// Friction at the joint; `None` where the file does not give it.
     pub viscous: Option<Polynomial>,
@@ -215,7 +215,13 @@ impl Joint {
             Feature::SmoothFriction => self.smooth.is_some(),
             Feature::Stribeck => self.stribeck.is_some(),
             Feature::LoadFriction => self.load.as_ref().is_some_and(|load| !load.is_zero()),
+            Feature::CoupledMotor => self.motor.as_ref().is_some_and(|motor| !motor.coupling.is_empty()),
         }
+    }
+
+    /// Its rotor, where that rides on the link that carries the joint and spins with the joint alone.
+    pub fn plain_motor(&self) -> Option<&Motor> {
+        self.motor.as_ref().filter(|motor| motor.carrier == self.parent && motor.coupling.is_empty())
     }
 
     /// v of exp(-|dq| / v), which its friction contains: tanh(dq / w) = sign(dq) (1 - E) / (1 + E) with E = exp(-2 |dq| / w).
@@ -308,20 +314,24 @@ pub struct Body {
     pub inertia: [Polynomial; 6],
 }
 
-/// A rotor: rides on the parent link and spins about its own axis with `ratio` times the joint rate.
+/// A rotor: rides on a link and spins about its own axis with `ratio` times the joint rate, and with the rates that are coupled to it.
 #[derive(Clone, Debug)]
 pub struct Motor {
     /// k_r: rotor speed over joint speed; rad/rad or rad/m; not zero.
     pub ratio: Polynomial,
+    /// The link that it rides on; `None` for the base.
+    pub carrier: Option<LinkId>,
+    /// Further joints that it spins with, by their indices, ascending, with factors, none 0 and none of its own joint; rad/rad or rad/m.
+    pub coupling: Vec<(usize, Number)>,
     /// Inertia about the spin axis, kg m²; `None` where the file does not give it.
     pub inertia: Option<Polynomial>,
     /// Mass, kg.
     pub mass: Polynomial,
-    /// Its place in the parent's *link frame* (the base frame if there is no parent), m.
+    /// Its place in the *link frame* of its carrier (the base frame if that is the base), m.
     pub position: [Polynomial; 3],
-    /// Unit vector of the spin axis in the parent's *link frame* (the base frame if there is no parent).
+    /// Unit vector of the spin axis in that frame.
     pub axis: [Number; 3],
-    /// Viscous friction at the rotor, N m s; acts at the joint as ratio² times this. `None` where the file does not give it.
+    /// Viscous friction at the rotor, N m s; acts at the joint as ratio² times this, with `coupling` at several. `None` where the file does not give it.
     pub viscous: Option<Polynomial>,
     /// Torque or force at the joint per unit of measured current, N m/A or N/A; above 0. It turns logs of currents into torques, and enters no equation.
     pub gain: Option<Number>,
@@ -479,6 +489,29 @@ impl Manipulator {
             !(has_coordinate && is_plain(variable) && variable.offset.is_zero())
         };
         variables.enumerate().find(|&entry| coupled(entry)).map(|(i, _)| &self.joints[i])
+    }
+
+    /// The joints with motors, and for each motor its speed over the rate of each coordinate; empty where each motor turns with one joint
+    /// that is a coordinate.
+    pub fn motor_rates(&self) -> Vec<(&Joint, Vec<Number>)> {
+        let coupled = self.coupling.is_some() || self.features().contains(&Feature::CoupledMotor);
+        let nominal = |id: ParameterId| self.parameters[id.0 as usize].nominal.clone();
+        let rates = |i: usize, motor: &Motor| {
+            let mut rates = vec![Number::zero(); self.dof()];
+            let mut add = |joint: usize, factor: &Number| match &self.coupling {
+                None => rates[joint] = rates[joint].plus(factor),
+                Some(coupling) => {
+                    for (a, k) in &coupling.variables[joint].factors {
+                        rates[*a] = rates[*a].plus(&factor.times(k));
+                    }
+                }
+            };
+            add(i, &motor.ratio.evaluate(&nominal));
+            motor.coupling.iter().for_each(|(joint, factor)| add(*joint, factor));
+            rates
+        };
+        let all = self.joints.iter().enumerate().filter(|_| coupled);
+        all.filter_map(|(i, joint)| Some((joint, rates(i, joint.motor.as_ref()?)))).collect()
     }
 
     /// The coordinates that move a link, by their indices, ascending.

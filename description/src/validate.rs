@@ -11,7 +11,8 @@
 //! bodies.rs      mass, centre of mass, inertia: no impossible body
 //! parents.rs     the tree of links, and where rows start
 //! coupling.rs    joints that follow others
-//! joints.rs      limits, motor, friction
+//! joints.rs      limits, friction, spring
+//! motors.rs      rotors: what carries them, and what they spin with
 //! choices.rs     end effectors, task, regressor
 //! places.rs      where things stand, for what is found out later
 //! plausible.rs   values that can be, but hardly are meant
@@ -29,6 +30,7 @@ mod evaluate;
 mod frames;
 mod geometry;
 mod joints;
+mod motors;
 mod names;
 mod nominal;
 mod number;
@@ -217,10 +219,10 @@ fn joints(description: &RobotDescription, context: &mut Context<'_>) -> Option<V
     let base = geometry::pose(description.base.as_ref(), "the base", context);
     let parents = parents::resolve(&list.value, context.diagnostics);
     let mut valid = Some(Vec::new());
-    for (i, joint) in list.value.iter().enumerate() {
+    for i in 0..list.value.len() {
         let parent = parents.as_ref().and_then(|parents| parents[i]);
         let base = base.as_ref().filter(|_| parents.is_some() && parent.is_none());
-        let joint = joints::joint(i, joint, base, parent, convention, context);
+        let joint = joints::joint(i, &list.value, base, parent, convention, context);
         valid = valid.zip(joint).map(|(mut all, joint)| {
             all.push(joint);
             all

@@ -17,8 +17,8 @@ mod write;
 use std::collections::BTreeSet;
 
 use armgen_codegen::description::{
-    BodyDescription, Convention, JointDescription, PoseDescription, PoseElement, PosturesDescription, RegressorDescription,
-    RobotDescription, RotationDescription, SpringDescription, StribeckDescription, Value, INERTIA_ELEMENTS,
+    BodyDescription, Convention, JointDescription, LeadersDescription, PoseDescription, PoseElement, PosturesDescription,
+    RegressorDescription, RobotDescription, RotationDescription, SpringDescription, StribeckDescription, Value, INERTIA_ELEMENTS,
 };
 use armgen_codegen::diagnostic::{Code, Diagnostic, Diagnostics};
 use armgen_codegen::document::yaml::has_comment;
@@ -130,9 +130,8 @@ impl<'d> Converter<'d> {
         text.extend(poses("base", &rows.base));
         text.push("joints:".into());
         let joints: &[JointDescription] = description.joints.as_ref().map_or(&[], |joints| &joints.value);
-        let parents: Vec<Option<usize>> = self.arm.parents().collect();
         for (k, (joint, row)) in joints.iter().zip(&rows.rows).enumerate() {
-            self.joint(joint, k, row, parents[k].map(|parent| &rows.rows[parent]), &mut text);
+            self.joint(joint, k, row, &rows.rows, &mut text);
         }
         if let Some(tip) = &description.tip {
             text.push(format!("tip: {}", tip.value));
@@ -354,7 +353,7 @@ impl<'d> Converter<'d> {
         Some(Rows { base, rows, tool })
     }
 
-    fn joint(&mut self, joint: &'d JointDescription, k: usize, row: &Row<'d>, before: Option<&Row<'d>>, text: &mut Vec<String>) {
+    fn joint(&mut self, joint: &'d JointDescription, k: usize, row: &Row<'d>, rows: &[Row<'d>], text: &mut Vec<String>) {
         let kind = if self.arm.joints[k].kind == JointKind::Prismatic { "prismatic" } else { "revolute" };
         text.push(format!("  - name: {}", self.arm.joints[k].name));
         text.push(format!("    type: {kind}"));
@@ -365,8 +364,7 @@ impl<'d> Converter<'d> {
         text.extend(poses("    mount", &row.mount));
         for (key, leaders) in [("follows", &joint.follows), ("adds", &joint.adds)] {
             let Some(leaders) = leaders else { continue };
-            let all = leaders.leaders.iter().map(|(name, factor)| format!("{}: {}", name.value, self.value(factor)));
-            text.push(format!("    {key}: {{{}}}", all.collect::<Vec<_>>().join(", ")));
+            text.push(format!("    {key}: {}", self.leaders(leaders)));
         }
         text.extend(joint.offset.as_ref().map(|offset| format!("    offset: {}", self.text(offset))));
         text.extend(row.keys.iter().map(|key| format!("    {key}")));
@@ -386,7 +384,7 @@ impl<'d> Converter<'d> {
         }
         text.push("    link:".into());
         self.link(joint, k, row, text);
-        self.motor(joint, k, before, text);
+        self.motor(joint, k, rows, text);
         let mut friction = self.given(&joint.friction.numbers());
         friction.extend(joint.friction.stribeck.as_ref().map(|StribeckDescription { torque, velocity, .. }| {
             format!("stribeck: {{{}}}", self.given(&[("torque", torque), ("velocity", velocity)]).join(", "))
@@ -467,8 +465,14 @@ impl<'d> Converter<'d> {
         }
     }
 
-    /// A rotor, whose place is given in the frame of the link before.
-    fn motor(&mut self, joint: &'d JointDescription, k: usize, before: Option<&Row<'d>>, text: &mut Vec<String>) {
+    /// Joints with factors.
+    fn leaders(&self, leaders: &'d LeadersDescription) -> String {
+        let all = leaders.leaders.iter().map(|(name, factor)| format!("{}: {}", name.value, self.value(factor)));
+        format!("{{{}}}", all.collect::<Vec<_>>().join(", "))
+    }
+
+    /// A rotor, whose place is given in the frame of the link that carries it.
+    fn motor(&mut self, joint: &'d JointDescription, k: usize, rows: &[Row<'d>], text: &mut Vec<String>) {
         let (Some(motor), Some(valid)) = (&joint.motor, &self.arm.joints[k].motor) else { return };
         text.push("    motor:".into());
         let mut line = |name: &str, words: String| text.push(format!("      {name}: {words}"));
@@ -483,7 +487,13 @@ impl<'d> Converter<'d> {
                 line(name, self.text(expression));
             }
         }
-        let moved = before.filter(|row| row.frame != Placement::identity());
+        if let Some(on) = &motor.on {
+            line("on", on.value.clone());
+        }
+        if let Some(coupling) = &motor.coupling {
+            line("coupling", self.leaders(coupling));
+        }
+        let moved = valid.carrier.map(|carrier| &rows[carrier.index()]).filter(|row| row.frame != Placement::identity());
         // Where none is given the mass sits at the origin of the old frame.
         let place = match (&motor.position, moved) {
             (Some(position), None) => Some(self.vector(&position.value)),

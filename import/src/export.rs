@@ -291,7 +291,7 @@ impl Writer<'_> {
 
     /// Viscous friction of a joint's motor as the joint feels it: ratio² times that at the rotor.
     fn rotor_friction(&self, joint: &JointDescription) -> Option<Number> {
-        let motor = joint.motor.as_ref()?;
+        let motor = joint.motor.as_ref().filter(|motor| motor.coupling.is_none())?;
         let ratio = self.number(&motor.ratio);
         let friction = &(&ratio * &ratio) * &self.number(&motor.viscous);
         (!friction.is_zero()).then_some(friction)
@@ -408,8 +408,12 @@ impl Writer<'_> {
             of_motor(joint, |motor| &motor.inertia) || of_motor(joint, |motor| &motor.mass)
         });
         joints_with("the viscous friction of rotors, times ratio², is part of `damping` at", &|joint| {
-            of_motor(joint, |motor| &motor.viscous)
+            self.rotor_friction(joint).is_some()
         });
+        joints_with(
+            "a URDF has no motors that turn with several joints; the friction of their rotors is left out at",
+            &|joint| joint.motor.as_ref().is_some_and(|motor| motor.coupling.is_some()),
+        );
         let masses = joints.iter().filter_map(|joint| Some(self.number(&joint.motor.as_ref()?.mass)));
         let mass = masses.fold(Number::zero(), |sum, mass| &sum + &mass);
         let mass = mass.as_rational().and_then(ending).unwrap_or_else(|| mass.to_f64().to_string());

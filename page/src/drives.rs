@@ -8,7 +8,7 @@ use armgen_codegen::document::Expression;
 use armgen_codegen::exact::{Number, Polynomial};
 use armgen_codegen::kinds::JointKind;
 use armgen_codegen::manipulator::{Joint, Manipulator};
-use armgen_codegen::source::Source;
+use armgen_codegen::source::{Source, Spanned};
 
 use crate::html::{decimal, escape, sentence};
 
@@ -61,7 +61,18 @@ fn columns(source: &Source, manipulator: &Manipulator, joints: &[(&Joint, &Joint
         motor("mass of the rotor", ["kg"; 2], &|m| of(Some(&m.mass)), |row| row.motor.as_ref()?.mass.as_ref()),
         column("place of the rotor", [""; 2], &|_, row| {
             let motor = row.motor.as_ref()?;
-            text([&motor.position, &motor.axis].map(|list| list.as_ref().map(|list| list_text(list, source))))
+            let mut place = text([&motor.position, &motor.axis].map(|list| list.as_ref().map(|list| list_text(list, source))))?;
+            if let Some(on) = &motor.on {
+                place.written = format!("on {}: {}", on.value, place.written);
+            }
+            Some(place)
+        }),
+        column("coupling of the motor", [""; 2], &|_, row| {
+            let leaders = &row.motor.as_ref()?.coupling.as_ref()?.leaders;
+            let each = |(name, factor): &(Spanned<String>, Option<Expression>)| {
+                format!("{}: {}", name.value, factor.as_ref().map_or(String::new(), |f| f.text(source)))
+            };
+            Some(Cell { written: leaders.iter().map(each).collect::<Vec<_>>().join(", "), number: None })
         }),
         motor("viscous at the rotor", ["N m s"; 2], &|m| of(m.viscous.as_ref()), |row| row.motor.as_ref()?.viscous.as_ref()),
         column("viscous friction", ["N m s", "N s/m"], &|j, row| cell(row.friction.viscous.as_ref(), of(j.viscous.as_ref()))),

@@ -246,6 +246,37 @@ pub fn tree(name: &str, dof: usize, random: &mut Random) -> String {
     text
 }
 
+/// A tree as [`tree`] draws it, with motors on any link that spin with any joints.
+pub fn tree_with_motors(name: &str, dof: usize, random: &mut Random) -> String {
+    let (mut text, mut own) = (String::new(), 0);
+    for line in tree(name, dof, random).lines() {
+        own += i64::from(line.starts_with("  - name: "));
+        text.push_str(line);
+        if let Some(motor) = text.ends_with('}').then(|| line.strip_prefix("    motor: {")).flatten() {
+            text.pop();
+            if random.chance(70) {
+                match random.whole(0, dof as i64) {
+                    0 => text.push_str(", on: base"),
+                    link => write!(text, ", on: joint{link}").expect("text"),
+                }
+                if !motor.contains("axis:") {
+                    let axis = random.one_of(&["[0, 0, 1]", "[-1, 0, 0]", "[0, 3, 4]"]);
+                    write!(text, ", axis: {axis}").expect("text");
+                }
+            }
+            let others: Vec<i64> = (1..=dof as i64).filter(|&joint| joint != own && random.chance(40)).collect();
+            let factors = others.iter().map(|joint| format!("joint{joint}: {}", random.one_of(&["-1", "2.5", "1/3", "-80"])));
+            let factors: Vec<String> = factors.collect();
+            if !factors.is_empty() {
+                write!(text, ", coupling: {{{}}}", factors.join(", ")).expect("text");
+            }
+            text.push('}');
+        }
+        text.push('\n');
+    }
+    text
+}
+
 /// An arm as [`arm_with`] draws it, with angles that are decimals: no sine or cosine has roots.
 pub fn arm_with_general_angles(name: &str, dof: usize, random: &mut Random) -> String {
     drawn(name, dof, general_angle, random)

@@ -18,6 +18,7 @@ mod imported_couplings;
 mod kinematics_alone;
 mod latex;
 mod layers;
+mod motors;
 mod named_files;
 mod oracle;
 mod panda7_control;

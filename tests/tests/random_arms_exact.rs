@@ -129,6 +129,24 @@ fn more_trees_equal_their_equations_and_keep_every_identity_exactly() {
     (4..32).for_each(certify_tree);
 }
 
+/// The same with motors on any link, which spin with any joints.
+#[test]
+fn trees_with_coupled_motors_equal_their_equations_and_keep_every_identity_exactly() {
+    (0..4).for_each(certify_motors);
+}
+
+#[test]
+#[ignore = "wide"]
+fn more_trees_with_coupled_motors_equal_their_equations_and_keep_every_identity_exactly() {
+    (4..48).for_each(certify_motors);
+}
+
+fn certify_motors(seed: u64) {
+    let joints = 2 + (seed % 4) as usize;
+    let text = random::tree_with_motors(&format!("motors_{seed}"), joints, &mut Random::new(seed));
+    certify_arm(seed, joints, &text, &mut Seen::default());
+}
+
 fn certify_tree(seed: u64) {
     let joints = 2 + (seed % 4) as usize;
     let text = random::tree(&format!("tree_{seed}"), joints, &mut Random::new(seed));

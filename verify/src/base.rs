@@ -105,8 +105,8 @@ fn sample<E: Element>(arm: &Arm<E>, state: State<E>, named: &[(Standard, bool)])
             Standard::RotorInertia(i) => whole.add_rotor_inertia(i, &arm.one, &mut column),
             Standard::Armature(i) => whole.add_armature(i, &arm.one, &mut column),
             Standard::RotorViscous(i) => {
-                let square = arm.joints[i].motor.as_ref().map_or(arm.zero.clone(), |m| m.ratio.times(&m.ratio));
-                column[i] = square.times(&at_joints.dq[i]);
+                let motor = arm.joints[i].motor.iter();
+                motor.for_each(|motor| motor.add_torque(&motor.spin(&arm.zero, &at_joints.dq), &mut column));
             }
             Standard::Viscous(i) => column[i].clone_from(&at_joints.dq[i]),
             Standard::Coulomb(i) => column[i].clone_from(&at_joints.directions[i]),

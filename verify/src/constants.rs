@@ -16,7 +16,7 @@ use crate::enclosure::Float;
 use crate::equations::arm::{formula, Arm};
 use crate::equations::parameters::{self, Standard, Vector};
 use crate::formula::Formula;
-use crate::program::{Literal, JOINTS, NOMINAL_GRAVITY, TIPS};
+use crate::program::{Literal, JOINTS, MOTORS, NOMINAL_GRAVITY, TIPS};
 use crate::reader::{Constant, Module};
 use crate::report::{ConstantReport, Exact, Verdict};
 
@@ -233,6 +233,12 @@ fn expected(checker: &Checker, module: &Module, nominal: &[Formula], names: &[St
         all.push(("COUPLING", array(coupling.variables.iter().map(row).collect())));
         all.push(("COUPLING_OFFSET", array(offsets.collect())));
     }
+    let motors = motor_rates(manipulator, coordinates.len());
+    if !motors.is_empty() {
+        all.push((MOTORS, Expected::Integer(motors.len() as u64)));
+        let row = |row: &Vec<Number>| array(row.iter().map(|rate| Expected::Number(formula(rate))).collect());
+        all.push(("MOTOR_RATES", array(motors.iter().map(row).collect())));
+    }
     if manipulator.gravity_is_argument {
         let nominal = |id: ParameterId| manipulator.parameters[id.0 as usize].nominal.clone();
         let gravity = manipulator.gravity.iter().map(|g| Expected::Number(formula(&g.evaluate(&nominal))));
@@ -246,6 +252,34 @@ fn expected(checker: &Checker, module: &Module, nominal: &[Formula], names: &[St
         all.push(("NOMINAL_BASE_PARAMETERS", array(nominal)));
     }
     all.into_iter().map(|(name, expected)| (name.to_owned(), expected)).chain(of_tips).collect()
+}
+
+/// Whether the module of an arm has the speeds of motors: where a joint is coupled, or a motor with several joints.
+pub(crate) fn has_motor_rates(manipulator: &Manipulator) -> bool {
+    let mut motors = manipulator.joints.iter().filter_map(|joint| joint.motor.as_ref()).peekable();
+    motors.peek().is_some() && (manipulator.coupling.is_some() || motors.any(|motor| !motor.coupling.is_empty()))
+}
+
+/// N: of each motor k_r S_i + Σ k_j S_j, the rotor's rate beside the link that carries it by the rates of coordinates.
+fn motor_rates(manipulator: &Manipulator, coordinates: usize) -> Vec<Vec<Number>> {
+    if !has_motor_rates(manipulator) {
+        return Vec::new();
+    }
+    let factor = |joint: usize, a: usize| match &manipulator.coupling {
+        Some(coupling) => coupling.variables[joint].factors.iter().find(|(of, _)| *of == a).map(|(_, factor)| factor.clone()),
+        None => (joint == a).then(Number::one),
+    };
+    let nominal = |id: ParameterId| manipulator.parameters[id.0 as usize].nominal.clone();
+    let motors = manipulator.joints.iter().enumerate().filter_map(|(i, joint)| Some((i, joint.motor.as_ref()?)));
+    let rates = motors.map(|(i, motor)| {
+        let own = (i, motor.ratio.evaluate(&nominal));
+        let entry = |a: usize| {
+            let all = motor.coupling.iter().chain([&own]);
+            all.fold(Number::zero(), |sum, (joint, k)| sum.plus(&factor(*joint, a).unwrap_or_default().times(k)))
+        };
+        (0..coordinates).map(entry).collect()
+    });
+    rates.collect()
 }
 
 /// Checks all constants of a module.

@@ -111,7 +111,7 @@ use claims::Claims;
 use enclosure::Float;
 use equations::parameters::Vector;
 use formula::Formula;
-use program::{JOINTS, NOMINAL_GRAVITY, TIPS};
+use program::{JOINTS, MOTORS, NOMINAL_GRAVITY, TIPS};
 use reader::{Constant, Module, ModuleText};
 use report::{Report, Verdict};
 use rounding::Trial;
@@ -150,6 +150,11 @@ pub fn prepare<'a>(
     match (module.constants.contains_key(JOINTS), manipulator.coupling.is_some()) {
         (true, false) => return Err(format!("{JOINTS}: no joint is coupled in the description")),
         (false, true) => return Err(format!("{JOINTS} is missing: joints are coupled in the description")),
+        _ => {}
+    }
+    match (module.constants.contains_key(MOTORS), constants::has_motor_rates(&manipulator)) {
+        (true, false) => return Err(format!("{MOTORS}: each motor turns with one coordinate in the description")),
+        (false, true) => return Err(format!("{MOTORS} is missing: motors turn with several coordinates in the description")),
         _ => {}
     }
     match (module.constants.contains_key(TIPS), manipulator.tips.is_empty()) {

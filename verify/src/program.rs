@@ -10,6 +10,8 @@ pub const NOMINAL_GRAVITY: &str = "NOMINAL_GRAVITY";
 
 /// The constant with the number of joints, of modules alone whose joints are coupled.
 pub const JOINTS: &str = "JOINTS";
+/// The number of motors, of arms whose motors turn with several coordinates.
+pub const MOTORS: &str = "MOTORS";
 /// The constant with the names of the end effectors, in modules where these have names.
 pub const TIPS: &str = "TIPS";
 

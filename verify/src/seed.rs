@@ -188,6 +188,14 @@ fn of_description(manipulator: &Manipulator) -> Hash {
             motor.axis.iter().for_each(|entry| arm.number(entry));
             arm.optional(&motor.inertia);
             arm.optional(&motor.viscous);
+            // The seeds of other motors stay what they are.
+            if motor.carrier != joint.parent || !motor.coupling.is_empty() {
+                arm.word(&format!("carrier {:?}", motor.carrier));
+                for (other, factor) in &motor.coupling {
+                    arm.word(&format!("coupling {other}"));
+                    arm.number(factor);
+                }
+            }
         }
         arm.optional(&joint.viscous);
         arm.optional(&joint.coulomb);

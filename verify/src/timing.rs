@@ -19,7 +19,8 @@ mod taylor;
 
 use serde_json::Value;
 
-use armgen_description::manipulator::Manipulator;
+use armgen_description::kinds::Feature;
+use armgen_description::manipulator::{Joint, Manipulator};
 
 use crate::element::Element;
 use crate::equations::arm::Arm;
@@ -345,8 +346,9 @@ struct Nodes(Vec<f64>);
 impl Checker {
     fn new(manipulator: &Manipulator, file: File) -> Result<Checker, String> {
         let names: Vec<&String> = manipulator.joints.iter().map(|joint| &joint.name).collect();
-        if manipulator.coupling.is_some() {
-            return Err("coupled joints are not treated".to_owned());
+        let coupled = |joint: &Joint| joint.has(Feature::CoupledMotor);
+        if manipulator.coupling.is_some() || manipulator.joints.iter().any(coupled) {
+            return Err("coupled joints and motors are not treated".to_owned());
         }
         if names != file.joints.iter().collect::<Vec<_>>() {
             return Err("its joints are not those of the description".to_owned());
@@ -444,7 +446,7 @@ impl Checker {
                 let [low, high] = limits.effort[joint];
                 let [m, c, g] = [0, 1, 2].map(|part| &of.torques[part][joint]);
                 let arm = &self.arm.joints[joint];
-                let motor = arm.motor.as_ref().map(|motor| motor.ratio.times(&motor.ratio).times(&motor.viscous));
+                let motor = arm.motor.as_ref().map(|motor| motor.rates[0].1.times(&motor.rates[0].1).times(&motor.viscous));
                 let viscous = motor.map_or_else(|| arm.viscous.clone(), |motor| motor.plus(&arm.viscous));
                 let dry = arm.coulomb.plus(&arm.load.times(&g.magnitude()));
                 let d = g.plus(&dry.directed(rate)).plus(&arm.offset);

@@ -15,7 +15,7 @@ use super::coupling::Coupled;
 use super::parameters::{second_moments, Inertial, StandardParameter, View};
 use crate::exact::Number;
 use crate::kinds::JointKind;
-use crate::manipulator::{Manipulator, Placement, Pose};
+use crate::manipulator::{LinkId, Manipulator, Placement, Pose};
 use crate::ring::matrix::{transpose, Matrix, Vector, ZERO};
 use crate::ring::{ExprId, Pool, Symbol};
 
@@ -30,7 +30,7 @@ pub struct Body {
     pub second: [ExprId; 6],
 }
 
-/// A rotor: its coupling to the motion of the parent link.
+/// A rotor on the parent link that spins with its joint alone: its coupling to the motion of the parent link.
 #[derive(Clone, Copy, Debug)]
 pub struct Rotor {
     /// I_m, kg m².
@@ -39,6 +39,23 @@ pub struct Rotor {
     pub ratio: ExprId,
     /// Unit vector of the spin axis in the parent's joint frame (base frame without parent).
     pub axis: Vector,
+}
+
+/// A rotor that rides elsewhere than on the link before its joint, or spins with the rates of several joints.
+#[derive(Clone, Debug)]
+pub struct CoupledRotor {
+    /// The joint that its motor is of.
+    pub joint: usize,
+    /// I, kg m².
+    pub inertia: ExprId,
+    /// Viscous friction at the rotor.
+    pub viscous: ExprId,
+    /// a: unit vector of the spin axis in the joint frame of its carrier (base frame without one).
+    pub axis: Vector,
+    /// The link that carries it; none for the base.
+    pub carrier: Option<usize>,
+    /// n: joints with factors, each joint once.
+    pub rates: Vec<(usize, ExprId)>,
 }
 
 /// A joint and the link it moves.
@@ -71,11 +88,11 @@ pub struct Joint {
     pub link_origin: Vector,
     /// The link, in the joint frame, with the rotors that ride on it (their masses, and their inertia as far as it moves with the link).
     pub body: Body,
-    /// The rotor that drives this joint.
+    /// The rotor that drives this joint, where it rides on the parent link and spins with this joint alone.
     pub rotor: Option<Rotor>,
     /// Inertia that the joint alone feels.
     pub armature: ExprId,
-    /// Viscous friction seen at the joint: ratio² · rotor's + joint's.
+    /// Viscous friction seen at the joint: the joint's, and ratio² · that of `rotor`.
     pub viscous: ExprId,
     /// Coulomb friction.
     pub coulomb: ExprId,
@@ -115,6 +132,8 @@ pub struct Arm {
     pub joints: Vec<Joint>,
     /// Acceleration of free fall in the base frame: numbers, or symbols where it is an argument.
     pub gravity: Vector,
+    /// The other rotors.
+    pub rotors: Vec<CoupledRotor>,
     /// The end effector.
     pub tool: Tool,
     /// The frames of payloads, those of the end effectors that have any.
@@ -267,7 +286,7 @@ impl Arm {
         };
         let own = tool(pool, manipulator, view, &joints, manipulator.tip.index(), &manipulator.tool);
         let coupling = manipulator.coupling.as_ref().map(|coupling| Coupled::new(pool, coupling));
-        let mut arm = Arm { joints, gravity, tool: own, loads: Vec::new(), base_moment: ZERO, coupling };
+        let mut arm = Arm { joints, gravity, rotors: Vec::new(), tool: own, loads: Vec::new(), base_moment: ZERO, coupling };
         for (load, number) in manipulator.loads().into_iter().zip(0..) {
             let Tool { link, rotation, origin } = tool(pool, manipulator, view, &arm.joints, load.link, load.tool);
             arm.loads.push(Tool { link, rotation, origin });
@@ -297,6 +316,11 @@ impl Arm {
     /// The frames of the end effector and of payloads that a link carries.
     pub(super) fn tools_of(&mut self, link: usize) -> impl Iterator<Item = &mut Tool> {
         std::iter::once(&mut self.tool).chain(&mut self.loads).filter(move |tool| tool.link == link)
+    }
+
+    /// The rotors beside those of joints that a link carries.
+    pub(super) fn rotors_on(&mut self, link: usize) -> impl Iterator<Item = &mut CoupledRotor> {
+        self.rotors.iter_mut().filter(move |rotor| rotor.carrier == Some(link))
     }
 
     /// The links from the base to a link.
@@ -524,7 +548,7 @@ fn joint(pool: &mut Pool, manipulator: &Manipulator, view: View<'_>, i: usize) -
     let friction_velocity = pool.constant(&joint.friction_velocity());
     let stiffness = given(pool, StandardParameter::Stiffness(index));
     let rest = joint.spring.as_ref().map_or(ExprId::ZERO, |spring| view.polynomial(pool, manipulator, &spring.rest));
-    if let Some(motor) = &joint.motor {
+    if let Some(motor) = joint.plain_motor() {
         let ratio = view.polynomial(pool, manipulator, &motor.ratio);
         let at_rotor = given(pool, StandardParameter::RotorViscous(index));
         let square = pool.mul(ratio, ratio);
@@ -533,7 +557,7 @@ fn joint(pool: &mut Pool, manipulator: &Manipulator, view: View<'_>, i: usize) -
     }
     Joint {
         kind: joint.kind,
-        parent: joint.parent.map(|parent| parent.index()),
+        parent: joint.parent.map(LinkId::index),
         fixed,
         sine,
         cosine,
@@ -560,18 +584,19 @@ fn joint(pool: &mut Pool, manipulator: &Manipulator, view: View<'_>, i: usize) -
     }
 }
 
-/// Adds the rotor of joint i: mass and inertia as they move with the parent link, and the coupling.
+/// Adds the rotor of joint i: mass and inertia as they move with the link that it rides on, and the coupling.
 ///
 /// A rotor of inertia I_m about its axis z that turns with omega_p + k dq z has the kinetic energy
-/// `½ I_m (z·omega_p)² + I_m k dq (z·omega_p) + ½ I_m k² dq²`: the first part is an inertia I_m z z' of the parent link, the others are the
+/// `½ I_m (z·omega_p)² + I_m k dq (z·omega_p) + ½ I_m k² dq²`: the first part is an inertia I_m z z' of that link, the others are the
 /// coupling.
 fn add_rotor(pool: &mut Pool, manipulator: &Manipulator, view: View<'_>, arm: &mut Arm, i: usize) {
-    let Some(motor) = &manipulator.joints[i].motor else { return };
-    let parent = arm.joints[i].parent;
+    let joint = &manipulator.joints[i];
+    let Some(motor) = &joint.motor else { return };
+    let carrier = motor.carrier.map(LinkId::index);
     let axis = motor.axis.clone().map(|a| pool.constant(&a));
     let position = motor.position.clone().map(|x| view.polynomial(pool, manipulator, &x));
     let mass = view.polynomial(pool, manipulator, &motor.mass);
-    let (axis, position) = match parent {
+    let (axis, position) = match carrier {
         Some(p) => {
             let link = arm.joints[p];
             let turned = pool.transform(&link.link_rotation, &position);
@@ -585,8 +610,15 @@ fn add_rotor(pool: &mut Pool, manipulator: &Manipulator, view: View<'_>, arm: &m
     };
     let inertia = view.standard(pool, manipulator, StandardParameter::RotorInertia(i as u16));
     let ratio = view.polynomial(pool, manipulator, &motor.ratio);
-    arm.joints[i].rotor = Some(Rotor { inertia, ratio, axis });
-    if let Some(p) = parent {
+    if joint.plain_motor().is_some() {
+        arm.joints[i].rotor = Some(Rotor { inertia, ratio, axis });
+    } else {
+        let viscous = view.standard(pool, manipulator, StandardParameter::RotorViscous(i as u16));
+        let mut rates = vec![(i, ratio)];
+        rates.extend(motor.coupling.iter().map(|(joint, factor)| (*joint, pool.constant(factor))));
+        arm.rotors.push(CoupledRotor { joint: i, inertia, viscous, axis, carrier, rates });
+    }
+    if let Some(p) = carrier {
         let tensor = PAIRS.map(|(a, b)| {
             let product = pool.mul(axis[a], axis[b]);
             pool.mul(inertia, product)

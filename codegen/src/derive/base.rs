@@ -7,7 +7,7 @@
 //! Friction is grouped with nothing else, so that gravity and friction keep their own parameters.
 
 use super::arm::{Arm, GroupingConvention};
-use super::newton_euler::Motion;
+use super::motion::Motion;
 use super::parameters::{Inertial, Parameter, ParameterKind, ParameterVector, StandardParameter, View};
 use super::passes::rotate_last_link;
 use super::plan::Plan;

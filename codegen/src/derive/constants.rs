@@ -36,6 +36,7 @@ fn constants(manipulator: &Manipulator) -> Vec<Number> {
         }
         if let Some(motor) = &joint.motor {
             numbers.extend(motor.axis.iter().cloned());
+            numbers.extend(motor.coupling.iter().map(|(_, factor)| factor.clone()));
             let all = motor.position.iter().chain([&motor.ratio, &motor.mass]).chain(&motor.inertia).chain(&motor.viscous);
             numbers.extend(all.flat_map(|p| p.terms().map(|(_, c)| c.clone())));
         }

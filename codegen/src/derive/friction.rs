@@ -4,10 +4,12 @@
 //! F_i = F_v dq_i + F_3 dq_i³ + F_c sign(dq_i) + F_0 + F_s sign(dq_i) exp(-|dq_i| / v_s)
 //! ```
 //!
-//! Smooth friction has tanh(dq_i / v) in place of sign(dq_i). F_v has what the rotor adds, k_r² F_m. Friction that grows with the load depends on q: `quantities/load_friction.rs`.
+//! Smooth friction has tanh(dq_i / v) in place of sign(dq_i). F_v has what the rotor adds, k_r² F_m; that of a rotor
+//! which spins with several joints is no term of one joint: `rotors.rs`. Friction that grows with the load depends on q: `quantities/load_friction.rs`.
 
 use super::arm::{Arm, Joint};
 use super::parameters::StandardParameter;
+use super::rotors;
 use crate::ring::{Elementary, ExprId, Pool, Symbol};
 
 /// The function that a coefficient is multiplied with at joint `i`, but for the factor dq of viscous and cubic friction.
@@ -126,7 +128,9 @@ pub(super) fn friction(pool: &mut Pool, arm: &Arm, rates: &[ExprId]) -> Vec<Expr
         }
         sum
     };
-    (0..arm.dof()).map(of_joint).collect()
+    let mut torques = (0..arm.dof()).map(of_joint).collect::<Vec<ExprId>>();
+    rotors::add_friction(pool, arm, rates, &mut torques);
+    torques
 }
 
 /// ∂F/∂dq of joint `i` beyond the derivatives that `rest` holds; functions that jump count as constant there.

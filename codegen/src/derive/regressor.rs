@@ -13,11 +13,13 @@
 
 use std::collections::BTreeMap;
 
-use super::arm::Arm;
+use super::arm::{Arm, CoupledRotor, Rotor};
 use super::friction;
-use super::newton_euler::{deflection, inverse_dynamics, link_motions, LinkMotion, Motion};
+use super::motion::{link_motions, LinkMotion, Motion};
+use super::newton_euler::{deflection, inverse_dynamics};
 use super::parameters::{Inertial, ParameterKind, ParameterVector, StandardParameter};
 use super::plan::{self, Place, Plan, Start};
+use super::rotors;
 use super::wrench::{axis_component, wrench_to_parent};
 use crate::pass::Pass;
 use crate::ring::matrix::{transpose, Matrix, Vector, ZERO};
@@ -112,9 +114,15 @@ fn columns_in(
             }
             StandardParameter::RotorViscous(i) => {
                 let i = usize::from(i);
-                let ratio = arm.joints[i].rotor.expect("its friction is the rotor's").ratio;
-                let square = pool.mul(ratio, ratio);
-                y[i][column] = pool.mul(square, motion.reference[i]);
+                match arm.joints[i].rotor {
+                    Some(Rotor { ratio, .. }) => {
+                        let square = pool.mul(ratio, ratio);
+                        y[i][column] = pool.mul(square, motion.reference[i]);
+                    }
+                    None => rotors::friction_column(pool, &CoupledRotor::of(arm, i), &motion.reference)
+                        .into_iter()
+                        .for_each(|(row, entry)| y[row][column] = entry),
+                }
             }
             StandardParameter::Armature(i) => y[usize::from(i)][column] = motion.accelerations[usize::from(i)],
             StandardParameter::Viscous(i)
@@ -319,25 +327,25 @@ fn inertia_moments(pool: &mut Pool, u: &Matrix) -> [Vector; 6] {
     .map(|v| if v == [zero; 3] { ZERO } else { v })
 }
 
-/// The column of a rotor's inertia: its whole angular momentum, that of the parent link's turning included.
+/// The column of a rotor's inertia: its whole angular momentum, that of its carrier's turning included.
 fn rotor_column(pool: &mut Pool, arm: &Arm, motions: &[LinkMotion], motion: &Motion, i: usize) -> Vec<ExprId> {
     let mut column = vec![ExprId::ZERO; arm.dof()];
-    let rotor = arm.joints[i].rotor.expect("its inertia is the rotor's");
-    let own = pool.mul(rotor.ratio, motion.accelerations[i]);
-    let Some(parent) = arm.joints[i].parent else {
-        column[i] = pool.mul(rotor.ratio, own);
+    let rotor = CoupledRotor::of(arm, i);
+    let own = rotor.spin(pool, &motion.accelerations);
+    let Some(carrier) = rotor.carrier else {
+        rotor.rates.iter().for_each(|&(joint, factor)| column[joint] = pool.mul(factor, own));
         return column;
     };
-    let m = &motions[parent];
-    // Spin s = z·omega + k dq; moment on the parent: z (z·domega + k ddq) + omega × z s, polarised.
+    let m = &motions[carrier];
+    // Spin s = z·omega + k dq; moment on the carrier: z (z·domega + k ddq) + omega × z s, polarised.
     let of_link = pool.dot3(&rotor.axis, &m.domega);
     let change = pool.add(own, of_link);
-    column[i] = pool.mul(rotor.ratio, change);
-    let spin = |pool: &mut Pool, omega: &Vector, rate: ExprId| {
-        let (along, own) = (pool.dot3(&rotor.axis, omega), pool.mul(rotor.ratio, rate));
+    rotor.rates.iter().for_each(|&(joint, factor)| column[joint] = pool.mul(factor, change));
+    let spin = |pool: &mut Pool, omega: &Vector, rates: &[ExprId]| {
+        let (along, own) = (pool.dot3(&rotor.axis, omega), rotor.spin(pool, rates));
         pool.add(along, own)
     };
-    let (s, s_r) = (spin(pool, &m.omega, motion.rates[i]), spin(pool, &m.omega_r, motion.reference[i]));
+    let (s, s_r) = (spin(pool, &m.omega, &motion.rates), spin(pool, &m.omega_r, &motion.reference));
     let (sweep, sweep_r) = (pool.cross(&m.omega, &rotor.axis), pool.cross(&m.omega_r, &rotor.axis));
     let half = pool.fraction(1, 2);
     let mut moment = [0, 1, 2].map(|k| {
@@ -351,10 +359,10 @@ fn rotor_column(pool: &mut Pool, arm: &Arm, motions: &[LinkMotion], motion: &Mot
         let spun = pool.mul(change, rotor.axis[k]);
         pool.add(spun, gyroscopic)
     });
-    let mut link = parent;
+    let mut link = carrier;
     loop {
         if arm.joints[link].is_revolute() {
-            column[link] = moment[2];
+            column[link] = pool.add(column[link], moment[2]);
         }
         let Some(outer) = arm.joints[link].parent else { return column };
         moment = arm.joints[link].to_parent(pool, &moment);

@@ -3,7 +3,8 @@
 use super::arm::Arm;
 use super::constants::field_of;
 use super::friction::friction;
-use super::newton_euler::{inverse_dynamics, newton_euler, Motion};
+use super::motion::Motion;
+use super::newton_euler::{inverse_dynamics, newton_euler};
 use super::parameters::{ParameterVector, View};
 use super::plan::Plan;
 use super::quantities::base_regressor::BASE_REGRESSOR;

@@ -214,6 +214,8 @@ pub struct DescribedParameters {
     pub tips: Vec<String>,
     /// Whether joints are coupled.
     pub is_coupled: bool,
+    /// Names of the joints with motors, if the module has the speeds of these.
+    pub motors: Vec<String>,
 }
 
 impl DescribedParameters {
@@ -226,6 +228,7 @@ impl DescribedParameters {
             gravity_is_argument: module.gravity_is_argument,
             tips: module.tips.iter().map(|tip| tip.name.clone()).collect(),
             is_coupled: module.coupling.is_some(),
+            motors: module.motors.iter().flat_map(|motors| &motors.joints).cloned().collect(),
         }
     }
 
@@ -320,7 +323,7 @@ mod tests {
 
     #[test]
     fn every_link_leads_somewhere() {
-        const CONSTANTS: [&str; 8] = [
+        const CONSTANTS: [&str; 9] = [
             "PARAMETER_NAMES",
             "NOMINAL_PARAMETERS",
             "BASE_PARAMETER_NAMES",
@@ -329,6 +332,7 @@ mod tests {
             "COUPLING",
             "COUPLING_OFFSET",
             "ALL_JOINT_NAMES",
+            "MOTOR_RATES",
         ];
         let shown = |link: Link<'_>| match link {
             Link::Function(name) => {

@@ -216,8 +216,11 @@ const OF_TIP: [&str; 3] = ["TASK_ROWS", "TASK", "COORDINATES"];
 /// The constants of a module with coupled joints.
 const OF_COUPLING: [&str; 4] = ["JOINTS", "ALL_JOINT_NAMES", "COUPLING", "COUPLING_OFFSET"];
 
+/// The constants of a module with motors that turn with several coordinates.
+const OF_MOTORS: [&str; 2] = ["MOTORS", "MOTOR_RATES"];
+
 /// The constants of any module.
-const CONSTANTS: [&str; 23] = [
+const CONSTANTS: [&str; 25] = [
     "NAME",
     "DOF",
     "JOINT_NAMES",
@@ -231,6 +234,8 @@ const CONSTANTS: [&str; 23] = [
     "ALL_JOINT_NAMES",
     "COUPLING",
     "COUPLING_OFFSET",
+    "MOTORS",
+    "MOTOR_RATES",
     "TASK_ROWS",
     "TASK",
     TIPS,
@@ -282,6 +287,11 @@ pub(super) fn constants_documentation(described: &DescribedParameters, first: us
         "ALL_JOINT_NAMES" => "Names of all joints, base to tip.".into(),
         "COUPLING" => "S of the joint variables S q + c: a row for each joint, a column for each coordinate.".into(),
         "COUPLING_OFFSET" => "c of the joint variables S q + c, rad or m.".into(),
+        "MOTORS" => format!("Number of motors, of the joints {}.", described.motors.join(", ")),
+        "MOTOR_RATES" => {
+            "N of the rotor speeds N dq beside the links that carry the rotors: a row for each motor, a column for each coordinate. Torques of motors tau_m do the work of tau = N' tau_m."
+                .into()
+        }
         "TASK_ROWS" => "Number of rows of the operational space.".into(),
         "TASK" => format!(
             "Rows of the geometric Jacobian that make up the operational space: {a} {b} {c} along x y z, {d} {e} {f} about x y z, in the base frame."
@@ -317,7 +327,10 @@ pub(super) fn constants_documentation(described: &DescribedParameters, first: us
 fn has_constant(name: &str, described: &DescribedParameters) -> bool {
     let has_base_parameters = !name.contains("BASE_") || described.base_parameters.is_some();
     let has_gravity = name != "NOMINAL_GRAVITY" || described.gravity_is_argument;
-    has_base_parameters && has_gravity && (!OF_COUPLING.contains(&name) || described.is_coupled)
+    has_base_parameters
+        && has_gravity
+        && (!OF_COUPLING.contains(&name) || described.is_coupled)
+        && (!OF_MOTORS.contains(&name) || !described.motors.is_empty())
 }
 
 /// The constants of a module, in order; `first`: first index of the language.
@@ -334,7 +347,7 @@ pub(super) fn constants(module: &Module, first: usize) -> Vec<Constant> {
     };
     let position = |joint: &Joint| Value::Array(vec![number(&joint.position[0], true), number(&joint.position[1], false)]);
     let counted = |all: &[usize]| Value::Array(all.iter().map(|&one| Value::Count(one + first)).collect());
-    let coupling = module.coupling.as_ref();
+    let (coupling, motors) = (module.coupling.as_ref(), module.motors.as_ref());
     let exact = |row: &[Number]| Value::Array(row.iter().cloned().map(Value::Number).collect());
     let of_tip = |name: &str| {
         let of = |tip: &EndEffector| [Value::Count(tip.task.len()), counted(&tip.task), counted(&tip.coordinates)];
@@ -357,6 +370,8 @@ pub(super) fn constants(module: &Module, first: usize) -> Vec<Constant> {
             "ALL_JOINT_NAMES" => Value::Array(coupling.iter().flat_map(|coupling| &coupling.names).map(text).collect()),
             "COUPLING" => Value::Array(coupling.iter().flat_map(|coupling| &coupling.factors).map(|row| exact(row)).collect()),
             "COUPLING_OFFSET" => coupling.map_or(Value::Array(Vec::new()), |coupling| exact(&coupling.offsets)),
+            "MOTORS" => Value::Count(motors.map_or(0, |motors| motors.joints.len())),
+            "MOTOR_RATES" => Value::Array(motors.iter().flat_map(|motors| &motors.rates).map(|row| exact(row)).collect()),
             "TASK_ROWS" => Value::Count(module.task.len()),
             "TASK" => counted(&module.task),
             "PARAMETERS" => Value::Count(module.parameters.len()),

@@ -200,6 +200,7 @@ fn constants(module: &Module) -> TokenStream {
     };
     let same_for_all = functions_of_parameters(module);
     let coupling = coupling_constants(module, &documented);
+    let motors = motor_constants(module, &documented);
     let base = base_constants(module, &documented);
     let structures = structures(module, false);
     quote! {
@@ -220,6 +221,7 @@ fn constants(module: &Module) -> TokenStream {
         pub const POSITION_LIMITS: [[Real; 2]; DOF] = [#(#position),*];
         #(#sizes)*
         #coupling
+        #motors
         #tasks
         #of_parameters
         #[allow(dead_code)]
@@ -306,6 +308,25 @@ fn coupling_constants(module: &Module, documented: &[(String, Vec<String>)]) -> 
         #of_offsets
         #[allow(dead_code, clippy::all)]
         pub const COUPLING_OFFSET: [Real; JOINTS] = [#(#offsets),*];
+    })
+}
+
+/// The speeds of motors.
+fn motor_constants(module: &Module, documented: &[(String, Vec<String>)]) -> Option<TokenStream> {
+    let motors = module.motors.as_ref()?;
+    let [of_count, of_rates] = ["MOTORS", "MOTOR_RATES"].map(|constant| documentation_of(documented, constant));
+    let count = usize_literal(motors.joints.len());
+    let rows = motors.rates.iter().map(|row| {
+        let row = row.iter().map(|value| literal(value, module.scalar));
+        quote!([#(#row),*])
+    });
+    Some(quote! {
+        #of_count
+        #[allow(dead_code)]
+        pub const MOTORS: usize = #count;
+        #of_rates
+        #[allow(dead_code, clippy::all)]
+        pub const MOTOR_RATES: [[Real; DOF]; MOTORS] = [#(#rows),*];
     })
 }
 

@@ -178,7 +178,7 @@ const LINK_OF_JOINT: Entry =
 const MOTOR_OF_JOINT: Entry = optional(
     "motor",
     Shape::Mapping("motor", MOTOR),
-    "The rotor. It moves with the previous link and spins with ratio times the joint rate.",
+    "The rotor. It moves with the previous link, or with that of on, and spins with ratio times the joint rate, plus coupling.",
 );
 const FRICTION_OF_JOINT: Entry = optional("friction", Shape::Mapping("friction", FRICTION), "Friction at the joint.");
 const SPRING_OF_JOINT: Entry =
@@ -306,10 +306,12 @@ pub(super) const INERTIA: &[Entry] = &[
 ];
 pub(super) const MOTOR: &[Entry] = &[
     usual("ratio", "ratio: 100", Shape::Expression("rad/rad or rad/m"), "Rotor speed over joint speed, not 0; 1 if left out."),
+    optional("on", Shape::Name, "The joint whose link carries the rotor, or base; if left out, the link before."),
+    optional("coupling", Shape::Factors, "Further joints with factors: the rotor spins with factor times their rates, too."),
     optional("inertia", Shape::Expression(MOMENT), "Inertia about the spin axis, at the rotor: before the gear."),
     optional("mass", Shape::Expression(MASS), "Mass, only if the masses of the links do not contain it."),
-    optional("position", Shape::Vector(3, LENGTH), "Position of the mass, in the frame of the link before."),
-    optional("axis", Shape::Vector(3, ""), "Spin axis in the frame of the link before; the joint axis if left out."),
+    optional("position", Shape::Vector(3, LENGTH), "Position of the mass, in the frame of the link that carries it."),
+    optional("axis", Shape::Vector(3, ""), "Spin axis in that frame; the joint axis if left out, which on does not allow."),
     optional("viscous", Shape::Expression("N m s"), "Viscous friction at the rotor; at the joint it acts as ratio² · viscous."),
     optional(
         "gain",

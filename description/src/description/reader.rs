@@ -299,6 +299,8 @@ impl Reader<'_> {
         Some(MotorDescription {
             key,
             ratio: self.field(&fields, "ratio"),
+            on: fields.get("on").and_then(|(key, node)| self.word(node, key, "on")),
+            coupling: fields.get("coupling").and_then(|(key, node)| self.leaders(node, key, "coupling")),
             inertia: self.field(&fields, "inertia"),
             mass: self.field(&fields, "mass"),
             position: fields.get("position").and_then(|(key, node)| self.vector(node, key, "position", ["x", "y", "z"])),

@@ -48,6 +48,7 @@ pub fn schema() -> Value {
         }));
     }
     let mut root = mapping(ROBOT, &mut definitions);
+    definitions["motor"]["dependencies"] = json!({ "on": ["axis"] });
     let pose = mapping(POSE, &mut definitions);
     definitions.insert("pose".into(), pose);
     definitions.insert(

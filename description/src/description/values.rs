@@ -224,6 +224,11 @@ macro_rules! walk {
                     }
                     if let Some(motor) = & $($mutable)? joint.motor {
                         $one(to, Role::Ratio, Fixed, & $($mutable)? motor.ratio);
+                        if let Some(coupling) = & $($mutable)? motor.coupling {
+                            for (_, factor) in & $($mutable)? coupling.leaders {
+                                $one(to, Role::Factor, Fixed, factor);
+                            }
+                        }
                         $one(to, Role::RotorInertia, RotorInertia, & $($mutable)? motor.inertia);
                         $one(to, Role::RotorMass, Mass, & $($mutable)? motor.mass);
                         $three(to, Role::RotorPosition, Length, & $($mutable)? motor.position);

@@ -27,10 +27,10 @@ const MOST_TURNS: i64 = 16;
 const LARGEST_ANGLE: i64 = 1_000_000;
 
 /// A leader: the place of its joint in the list, its factor, and where that is written.
-struct Leader {
-    joint: usize,
-    factor: Number,
-    span: Span,
+pub(super) struct Leader {
+    pub(super) joint: usize,
+    pub(super) factor: Number,
+    pub(super) span: Span,
 }
 
 /// The coupling of joints, `Some(None)` where no joint is coupled. Faults are reported.
@@ -75,13 +75,22 @@ fn leaders(i: usize, joint: &JointDescription, joints: &[JointDescription], cont
         context.diagnostics.push(fault.also(follows.key, "the first one"));
         return None;
     }
-    let (key, LeadersDescription { leaders, .. }) = match (&joint.follows, &joint.adds) {
-        (Some(follows), _) => ("follows", follows),
-        (None, Some(adds)) => ("adds", adds),
-        (None, None) => return Some(Vec::new()),
-    };
+    match (&joint.follows, &joint.adds) {
+        (Some(follows), _) => named("follows", follows, joints, context),
+        (None, Some(adds)) => named("adds", adds, joints, context),
+        (None, None) => Some(Vec::new()),
+    }
+}
+
+/// The joints that `key` names with factors; `None` after a fault.
+pub(super) fn named(
+    key: &str,
+    description: &LeadersDescription,
+    joints: &[JointDescription],
+    context: &mut Context<'_>,
+) -> Option<Vec<Leader>> {
     let mut found = Some(Vec::new());
-    for (name, factor) in leaders {
+    for (name, factor) in &description.leaders {
         let place = joints.iter().position(|other| other.name.as_ref().is_some_and(|own| own.value == name.value));
         if place.is_none() {
             let names: Vec<&str> =

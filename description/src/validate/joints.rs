@@ -1,29 +1,29 @@
-//! One joint: its frames, its link, limits, motor, friction and spring.
+//! One joint: its frames, its link, limits, friction and spring.
 
 use std::cmp::Ordering;
 
-use super::bodies::{self, optional_not_negative, warn_of_massless};
+use super::bodies::{self, optional_not_negative};
 use super::number::text_of;
-use super::{call, geometry, parents, zeros, Context};
+use super::{call, geometry, motors, parents, Context};
 use crate::description::{
-    Convention, FrictionDescription, JointDescription, LimitsDescription, MotorDescription, SpringDescription,
-    StribeckDescription,
+    Convention, FrictionDescription, JointDescription, LimitsDescription, SpringDescription, StribeckDescription,
 };
 use crate::diagnostic::Code;
 use crate::document::Expression;
 use crate::exact::{Number, Polynomial};
 use crate::kinds::JointKind;
-use crate::manipulator::{Joint, Limits, LinkId, Motor, Pose, Spring, Stribeck};
+use crate::manipulator::{Joint, Limits, LinkId, Pose, Spring, Stribeck};
 
 /// The joint; faults are reported. `base`: the pose before rows on the base.
 pub(super) fn joint(
     i: usize,
-    description: &JointDescription,
+    all: &[JointDescription],
     base: Option<&Pose>,
     parent: Option<LinkId>,
     convention: Option<Convention>,
     context: &mut Context<'_>,
 ) -> Option<Joint> {
+    let description = &all[i];
     let called = call(i, description);
     let start = parents::start(description, &called, base, context);
     let row = geometry::row(description, &called, convention, context);
@@ -34,7 +34,7 @@ pub(super) fn joint(
     let motor = match &description.motor {
         Some(motor) => {
             let joint_axis = row.as_ref().map(|r| r.before.frame.direction(&r.axis));
-            self::motor(motor, joint_axis, &called, context).map(Some)
+            motors::motor((i, motor), joint_axis, parent, all, context).map(Some)
         }
         None => Some(None),
     };
@@ -200,64 +200,4 @@ fn positive(value: Option<&Expression>, what: &str, called: &str, context: &mut 
         return None;
     }
     Some(Some(number))
-}
-
-fn motor(
-    description: &MotorDescription,
-    joint_axis: Option<[Number; 3]>,
-    called: &str,
-    context: &mut Context<'_>,
-) -> Option<Motor> {
-    let ratio = match &description.ratio {
-        Some(ratio) => {
-            let nominal = context.number(ratio);
-            if nominal.is_some_and(|r| r.sign() == Ordering::Equal) {
-                let message = format!("the gear ratio of joint {called} is 0");
-                let help = "a rotor that does not turn with its joint drives nothing: give rotor speed over joint speed, or leave `motor` out";
-                context.report(Code::ZeroRatio, ratio.span, message, "this is 0", help);
-            }
-            context.polynomial(ratio)
-        }
-        None => Some(Polynomial::from(Number::one())),
-    };
-    let of = |what: &str| format!("the {what} of the motor of joint {called}");
-    let inertia = optional_not_negative(&description.inertia, &of("inertia"), Code::NegativeRotorInertia, context);
-    let mass = optional_not_negative(&description.mass, &of("mass"), Code::NegativeMass, context);
-    let viscous = optional_not_negative(&description.viscous, &of("viscous friction"), Code::NegativeFriction, context);
-    let position = match &description.position {
-        Some(position) => context.polynomials(&position.value),
-        None => Some(zeros()),
-    };
-    if let (Some(given), Some(mass), Some(position)) = (&description.position, &mass, &position) {
-        let none = Polynomial::zero();
-        warn_of_massless(mass.as_ref().unwrap_or(&none), position, given.span, &of("position"), context);
-    }
-    let axis = match &description.axis {
-        Some(axis) => context.numbers(&axis.value).and_then(|a| {
-            let help = "give the direction as a vector other than 0, or leave `axis` out for the joint axis";
-            geometry::unit_vector(a, axis.span, &format!("the motor axis of joint {called}"), help, context)
-        }),
-        None => joint_axis,
-    };
-    let gain = match &description.gain {
-        Some(given) => {
-            let gain = context.number(given)?;
-            if gain.sign() != Ordering::Greater {
-                let message = format!("the gain of the motor of joint {called} is not positive");
-                let help = "give the torque at the joint per ampere, above 0; a current with the other sign is turned in its log";
-                context.report(Code::NonPositiveLimit, given.span, message, format!("this is {}", text_of(&gain)), help);
-            }
-            Some(gain)
-        }
-        None => None,
-    };
-    Some(Motor {
-        ratio: ratio?,
-        inertia: inertia?,
-        mass: mass?.unwrap_or_default(),
-        position: position?,
-        axis: axis?,
-        viscous: viscous?,
-        gain,
-    })
 }

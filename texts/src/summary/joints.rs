@@ -6,7 +6,7 @@ use armgen_codegen::description::{
 };
 use armgen_codegen::exact::{Number, Polynomial};
 use armgen_codegen::kinds::JointKind;
-use armgen_codegen::manipulator::{Joint, JointVariable, Manipulator};
+use armgen_codegen::manipulator::{Coordinate, Joint, JointVariable, Limits, Manipulator};
 use armgen_codegen::source::Source;
 
 use super::{decimal, digits};
@@ -119,35 +119,69 @@ pub(super) fn couplings(manipulator: &Manipulator) -> Vec<String> {
         if is_plain && variable.offset.is_zero() {
             return None;
         }
-        let term = |(a, factor): &(usize, Number)| match (factor.is_one(), (-factor).is_one()) {
-            (true, _) => coordinate(*a).clone(),
-            (_, true) => format!("-{}", coordinate(*a)),
-            _ => format!("{} {}", decimal(factor), coordinate(*a)),
-        };
-        let mut terms: Vec<String> = variable.factors.iter().map(term).collect();
+        let mut terms: Vec<String> = variable.factors.iter().map(|(a, factor)| term(factor, coordinate(*a))).collect();
         if !variable.offset.is_zero() || terms.is_empty() {
             terms.push(decimal(&variable.offset));
         }
         // The name of a joint with a coordinate is that of the coordinate.
         let of = if coupling.coordinates.contains(&i) { "variable of " } else { "" };
-        Some(format!("{of}{own} = {}", terms.join(" + ").replace("+ -", "- ")))
+        Some(format!("{of}{own} = {}", sum(&terms)))
     };
     coupling.variables.iter().enumerate().filter_map(sentence).collect()
 }
 
-/// The limits of the joints, angles also in degrees; `None` without limits.
+/// A factor times a variable.
+fn term(factor: &Number, name: &str) -> String {
+    match (factor.is_one(), (-factor).is_one()) {
+        (true, _) => name.to_owned(),
+        (_, true) => format!("-{name}"),
+        _ => format!("{} {name}", decimal(factor)),
+    }
+}
+
+fn sum(terms: &[String]) -> String {
+    terms.join(" + ").replace("+ -", "- ")
+}
+
+/// The motors that ride elsewhere than on the link before their joint, or turn with several joints, a sentence each.
+pub(super) fn motors(manipulator: &Manipulator) -> Vec<String> {
+    let name = |joint: usize| manipulator.joints[joint].name.as_str();
+    let sentence = |joint: &Joint| {
+        let motor = joint.motor.as_ref().filter(|_| joint.plain_motor().is_none())?;
+        let on = motor.carrier.map_or("the base".to_owned(), |link| format!("link {}", name(link.index())));
+        let own = term(&nominal(manipulator, &motor.ratio), &joint.name);
+        let others = motor.coupling.iter().map(|(other, factor)| term(factor, name(*other)));
+        let terms: Vec<String> = [own].into_iter().chain(others).collect();
+        Some(format!("that of {} rides on {on} and turns by {} beside it", joint.name, sum(&terms)))
+    };
+    manipulator.joints.iter().filter_map(sentence).collect()
+}
+
+/// The limits of the joints, angles also in degrees, and where joints are coupled those of coordinates; `None` without limits.
 pub(super) fn limits(manipulator: &Manipulator) -> Option<String> {
+    let joints = manipulator.joints.iter().enumerate();
+    let of_joints =
+        limits_of("limits", joints.map(|(i, joint)| (format!("{} {}", i + 1, joint.name), joint.kind, &joint.limits)));
+    let coordinates = manipulator.coordinates().into_iter().filter(|_| manipulator.coupling.is_some());
+    let of_coordinates = limits_of(
+        "limits of coordinates",
+        coordinates.map(|Coordinate { joint, limits, .. }| (joint.name.clone(), joint.kind, limits)),
+    );
+    let tables: Vec<String> = of_joints.into_iter().chain(of_coordinates).collect();
+    (!tables.is_empty()).then(|| tables.join("\n"))
+}
+
+fn limits_of<'a>(title: &'static str, rows: impl Iterator<Item = (String, JointKind, &'a Limits)>) -> Option<String> {
     let mut table =
-        Table::new([("limits", Left), ("position", Left), ("", Left), ("velocity", Right), ("", Left), ("effort", Right)]);
-    for (i, joint) in manipulator.joints.iter().enumerate() {
-        let limits = &joint.limits;
-        let revolute = joint.kind == JointKind::Revolute;
+        Table::new([(title, Left), ("position", Left), ("", Left), ("velocity", Right), ("", Left), ("effort", Right)]);
+    for (name, kind, limits) in rows {
+        let revolute = kind == JointKind::Revolute;
         let [angle, torque] = if revolute { ["rad", "N m"] } else { ["m", "N"] };
         let degrees = |value: &Number| digits(value.to_f64().to_degrees());
         let position = limits.position.as_ref();
         let velocity = limits.velocity.as_ref();
         table.row([
-            format!("{} {}", i + 1, joint.name),
+            name,
             position.map_or(String::new(), |[low, high]| format!("{} to {} {angle}", decimal(low), decimal(high))),
             position
                 .filter(|_| revolute)

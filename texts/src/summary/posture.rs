@@ -111,7 +111,7 @@ impl Posture {
         Posture::placed(manipulator, &self.links[link], &manipulator.joints[link].link)
     }
 
-    /// The masses on a link: itself, the load, and the rotors of the joints after it.
+    /// The masses on a link: itself, the load, and the rotors that it carries.
     fn masses<'a>(&'a self, manipulator: &'a Manipulator, link: usize) -> impl Iterator<Item = (f64, Point3<f64>)> + 'a {
         let is_here = move |id: LinkId| id.index() == link;
         let loads = manipulator.loads().into_iter().filter(move |load| load.link == link);
@@ -119,8 +119,8 @@ impl Posture {
             let end = self.links[link] * isometry(manipulator, &load.tool.frame);
             Posture::placed(manipulator, &end, std::slice::from_ref(load.body))
         });
-        let driven = manipulator.joints.iter().filter(move |next| next.parent.is_some_and(is_here));
-        let rotors = driven.filter_map(|next| next.motor.as_ref()).map(move |motor| {
+        let motors = manipulator.joints.iter().filter_map(|joint| joint.motor.as_ref());
+        let rotors = motors.filter(move |motor| motor.carrier.is_some_and(is_here)).map(move |motor| {
             let place = Point3::from(motor.position.each_ref().map(|x| number(manipulator, x)));
             (number(manipulator, &motor.mass), self.links[link] * place)
         });

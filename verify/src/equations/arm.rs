@@ -34,18 +34,20 @@ pub struct Body<E> {
     pub inertia: Matrix<E>,
 }
 
-/// A rotor on the parent link.
+/// A rotor.
 #[derive(Clone, Debug)]
 pub struct Motor<E> {
-    /// k_r.
-    pub ratio: E,
+    /// The link that carries it; none for the base.
+    pub carrier: Option<usize>,
+    /// The joints that it spins with, and by how much: its own joint by k_r first.
+    pub rates: Vec<(usize, E)>,
     /// Inertia about its axis.
     pub inertia: E,
     /// Mass.
     pub mass: E,
-    /// Position in the parent's link frame.
+    /// Position in the link frame of its carrier.
     pub position: Vector<E>,
-    /// Axis in the parent's link frame.
+    /// Axis in the link frame of its carrier.
     pub axis: Vector<E>,
     /// Viscous friction at the rotor.
     pub viscous: E,
@@ -253,6 +255,14 @@ impl<K: Arithmetic> Builder<'_, K> {
         Some(Coupling { coordinates: coupling.coordinates.clone(), variables })
     }
 
+    fn rates(&self, i: usize, motor: &manipulator::Motor) -> Option<Vec<(usize, K::Element)>> {
+        let mut rates = vec![(i, self.polynomial(&motor.ratio)?)];
+        for (joint, factor) in &motor.coupling {
+            rates.push((*joint, self.number(factor)?));
+        }
+        Some(rates)
+    }
+
     fn optional(&self, polynomial: Option<&Polynomial>) -> Option<K::Element> {
         match polynomial {
             Some(polynomial) => self.polynomial(polynomial),
@@ -260,11 +270,12 @@ impl<K: Arithmetic> Builder<'_, K> {
         }
     }
 
-    fn joint(&self, joint: &manipulator::Joint) -> Option<Joint<K::Element>> {
+    fn joint(&self, i: usize, joint: &manipulator::Joint) -> Option<Joint<K::Element>> {
         let motor = match &joint.motor {
             None => None,
             Some(motor) => Some(Motor {
-                ratio: self.polynomial(&motor.ratio)?,
+                carrier: motor.carrier.map(LinkId::index),
+                rates: self.rates(i, motor)?,
                 inertia: self.optional(motor.inertia.as_ref())?,
                 mass: self.polynomial(&motor.mass)?,
                 position: self.vector(&motor.position)?,
@@ -332,13 +343,27 @@ pub fn symmetric<E: Element>(six: &[E]) -> Matrix<E> {
     [[0, 1, 3], [1, 2, 4], [3, 4, 5]].map(|row| row.map(|i| six[i].clone()))
 }
 
+impl<E: Element> Motor<E> {
+    /// The rotor's rate beside its carrier, of the rates of joints; likewise its acceleration.
+    pub fn spin(&self, zero: &E, rates: &[E]) -> E {
+        self.rates.iter().fold(zero.clone(), |sum, (joint, factor)| sum.plus(&factor.times(&rates[*joint])))
+    }
+
+    /// Adds the torques of joints of a torque at the rotor, by virtual work.
+    pub fn add_torque(&self, torque: &E, torques: &mut [E]) {
+        for (joint, factor) in &self.rates {
+            torques[*joint] = torques[*joint].plus(&factor.times(torque));
+        }
+    }
+}
+
 impl<E: Element> Arm<E> {
     /// The arm with `parameters` for the named quantities of the description; `None` for a division by 0.
     pub fn new<K: Arithmetic<Element = E>>(arithmetic: &K, manipulator: &Manipulator, parameters: &[E]) -> Option<Arm<E>> {
         let builder = Builder { arithmetic, parameters };
         let mut joints = Vec::new();
-        for joint in &manipulator.joints {
-            joints.push(builder.joint(joint)?);
+        for (i, joint) in manipulator.joints.iter().enumerate() {
+            joints.push(builder.joint(i, joint)?);
         }
         let tip = |name: Option<&str>, link: LinkId, tool: &manipulator::Pose, load: Option<&manipulator::PlacedBody>, task| {
             let payload = match load {
@@ -392,7 +417,8 @@ impl<E: Element> Arm<E> {
             chosen: frame(&joint.chosen),
             link: body(&joint.link),
             motor: joint.motor.as_ref().map(|motor| Motor {
-                ratio: f(&motor.ratio),
+                carrier: motor.carrier,
+                rates: motor.rates.iter().map(|(joint, factor)| (*joint, f(factor))).collect(),
                 inertia: f(&motor.inertia),
                 mass: f(&motor.mass),
                 position: vector(&motor.position),

@@ -42,14 +42,14 @@ fn bodies<E: Element>(arm: &Arm<E>, pose: &Pose<E>) -> Vec<Placed<E>> {
     }
     for joint in &arm.joints {
         if let Some(motor) = &joint.motor {
-            let com = joint.parent.map_or_else(|| motor.position.clone(), |p| pose.links[p].point(&motor.position));
-            bodies.push(Placed { mass: motor.mass.clone(), com, link: joint.parent, inertia: None });
+            let com = motor.carrier.map_or_else(|| motor.position.clone(), |p| pose.links[p].point(&motor.position));
+            bodies.push(Placed { mass: motor.mass.clone(), com, link: motor.carrier, inertia: None });
         }
     }
     bodies
 }
 
-/// B(q), row by row (the book, eq. 7.32). The rotor of joint i rotates with its parent link, and with k_r about its own axis.
+/// B(q), row by row (the book, eq. 7.32). A rotor rotates with the link that carries it, and about its own axis with its motor's rate.
 pub fn inertia_matrix<E: Element>(arm: &Arm<E>, state: &State<E>) -> Vec<Vec<E>> {
     inertia_by(arm, state, &E::times)
 }
@@ -82,24 +82,28 @@ fn inertia_by<E: Element, R: Element>(arm: &Arm<E>, state: &State<E>, times: &dy
     }
     for (i, joint) in arm.joints.iter().enumerate() {
         let own = arm.row(i);
-        let mut columns: Vec<usize> = own.iter().map(|(a, _)| *a).collect();
+        let columns: Vec<usize> = own.iter().map(|(a, _)| *a).collect();
         let mut rate = vec![arm.zero.clone(); n];
         own.iter().for_each(|(a, factor)| rate[*a].clone_from(factor));
         accumulate(&columns, &|i, j| times(&joint.armature.times(&rate[i]), &rate[j]));
         let Some(motor) = &joint.motor else { continue };
         let mut rotor_speed = vec![arm.zero.clone(); n];
-        if let Some(parent) = joint.parent {
-            let axis = pose.links[parent].direction(&motor.axis);
-            for (j, (_, w)) in pose.jacobian(Some(parent), &pose.links[parent].origin).iter().enumerate() {
+        let mut columns: Vec<usize> = Vec::new();
+        if let Some(carrier) = motor.carrier {
+            let axis = pose.links[carrier].direction(&motor.axis);
+            for (j, (_, w)) in pose.jacobian(Some(carrier), &pose.links[carrier].origin).iter().enumerate() {
                 rotor_speed[j] = vector::dot(&axis, w);
             }
-            columns.extend(&pose.moving[parent]);
-            columns.sort_unstable();
-            columns.dedup();
+            columns.extend(&pose.moving[carrier]);
         }
-        for (a, factor) in &own {
-            rotor_speed[*a] = rotor_speed[*a].plus(&motor.ratio.times(factor));
+        for (joint, ratio) in &motor.rates {
+            for (a, factor) in arm.row(*joint) {
+                rotor_speed[a] = rotor_speed[a].plus(&ratio.times(&factor));
+                columns.push(a);
+            }
         }
+        columns.sort_unstable();
+        columns.dedup();
         accumulate(&columns, &|i, j| times(&motor.inertia.times(&rotor_speed[i]), &rotor_speed[j]));
     }
     for i in 0..n {
@@ -180,25 +184,24 @@ pub fn gravity<E: Element>(arm: &Arm<E>, state: &State<E>) -> Vec<E> {
     along_joints(arm, &|along| potential_energy(&moving, &state.moving(along, &still)).rate)
 }
 
-/// F_i = (k_r² F_m + F_v + F_3 dq_i²) rate_i + (F_c + F_s exp(-|dq_i| / v)) direction_i + F_0, with the drawn values of signs and exponentials. The
+/// F_i = (F_v + F_3 dq_i²) rate_i + (F_c + F_s exp(-|dq_i| / v)) direction_i + F_0, and F_m times its rate at each rotor, with the drawn values of signs and exponentials. The
 /// cubic term uses `rates` for one of its factors.
 pub fn friction<E: Element>(arm: &Arm<E>, state: &State<E>, rates: &[E]) -> Vec<E> {
     let (state, rates) = (arm.state_of_joints(state), arm.of_joints(rates));
     let State { dq, directions, stribeck, .. } = &*state;
-    let torques = arm
+    let mut torques: Vec<E> = arm
         .joints
         .iter()
         .enumerate()
         .map(|(i, joint)| {
-            let mut viscous = joint.viscous.clone();
-            if let Some(motor) = &joint.motor {
-                viscous = viscous.plus(&motor.ratio.times(&motor.ratio).times(&motor.viscous));
-            }
             let cubic = joint.cubic.times(&dq[i]).times(&dq[i]).times(&rates[i]);
             let dry = joint.coulomb.plus(&joint.stribeck.times(&stribeck[i]));
-            viscous.times(&rates[i]).plus(&dry.times(&directions[i])).plus(&joint.offset).plus(&cubic)
+            joint.viscous.times(&rates[i]).plus(&dry.times(&directions[i])).plus(&joint.offset).plus(&cubic)
         })
         .collect();
+    for motor in arm.joints.iter().filter_map(|joint| joint.motor.as_ref()) {
+        motor.add_torque(&motor.viscous.times(&motor.spin(&arm.zero, &rates)), &mut torques);
+    }
     arm.of_coordinates(torques)
 }
 

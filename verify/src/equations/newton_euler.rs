@@ -9,7 +9,8 @@
 //! τ_j = z_j · (N + (p - p_j) × F) (revolute),  z_j · F (prismatic),  for each joint j that moves the body
 //! ```
 //!
-//! A rotor has the angular momentum I_m s z with s = z·ω + k_r dq. Its rate of change acts on the parent link, and k_r I_m ds/dt on its joint.
+//! A rotor has the angular momentum I_m s z with s = z·ω + Σ k_j dq_j. Its rate of change acts on the link that carries it, and k_j I_m ds/dt on
+//! joint j.
 //!
 //! The regressor has two rates: C(q, dq) dqr = ½ (V(dq + dqr) - V(dq) - V(dqr)). V(u) = C(q, u) u is the torque of a motion with rates u and no
 //! accelerations, without gravity. This symmetric form belongs to the C of the Christoffel symbols.
@@ -167,30 +168,30 @@ impl<'a, E: Element> ArmMotion<'a, E> {
     /// Adds the torques of the rotor mass of joint `i`.
     pub fn add_rotor_mass(&self, i: usize, torques: &mut [E]) {
         let joint = &self.arm.joints[i];
-        let (Some(motor), Some(parent)) = (&joint.motor, joint.parent) else { return };
-        let point = self.pose.links[parent].point(&motor.position);
-        let a = self.links[parent].at(&sub(&point, &self.pose.joints[parent].origin));
+        let Some((motor, carrier)) = joint.motor.as_ref().and_then(|motor| Some((motor, motor.carrier?))) else { return };
+        let point = self.pose.links[carrier].point(&motor.position);
+        let a = self.links[carrier].at(&sub(&point, &self.pose.joints[carrier].origin));
         let nothing = self.arm.nothing();
-        self.add_wrench(Some(parent), &point, &scale(&motor.mass, &a), &nothing, torques);
+        self.add_wrench(Some(carrier), &point, &scale(&motor.mass, &a), &nothing, torques);
     }
 
-    /// Adds the torques of a rotor inertia at joint `i`.
+    /// Adds the torques of the rotor inertia of joint `i`.
     pub fn add_rotor_inertia(&self, i: usize, inertia: &E, torques: &mut [E]) {
         let joint = &self.arm.joints[i];
         let Some(motor) = &joint.motor else { return };
-        let mut change = motor.ratio.times(&self.motion.accelerations[i]);
-        if let Some(parent) = joint.parent {
-            let turning = &self.links[parent];
-            let axis = self.pose.links[parent].direction(&motor.axis);
+        let mut change = motor.spin(&self.arm.zero, &self.motion.accelerations);
+        if let Some(carrier) = motor.carrier {
+            let turning = &self.links[carrier];
+            let axis = self.pose.links[carrier].direction(&motor.axis);
             change = change.plus(&dot(&axis, &turning.alpha));
-            let rotor_speed = dot(&axis, &turning.omega).plus(&motor.ratio.times(&self.motion.rates[i]));
+            let rotor_speed = dot(&axis, &turning.omega).plus(&motor.spin(&self.arm.zero, &self.motion.rates));
             // d/dt (I s z) = I (ds/dt z + s ω × z)
             let rate = add(&scale(&change, &axis), &scale(&rotor_speed, &cross(&turning.omega, &axis)));
             let nothing = self.arm.nothing();
-            let point = self.pose.links[parent].origin.clone();
-            self.add_wrench(Some(parent), &point, &nothing, &scale(inertia, &rate), torques);
+            let point = self.pose.links[carrier].origin.clone();
+            self.add_wrench(Some(carrier), &point, &nothing, &scale(inertia, &rate), torques);
         }
-        torques[i] = torques[i].plus(&motor.ratio.times(inertia).times(&change));
+        motor.add_torque(&inertia.times(&change), torques);
     }
 
     /// Adds the torque of an armature at joint `i`.

@@ -216,8 +216,9 @@ pub fn standard_columns<E: Element>(arm: &Arm<E>, state: &State<E>, columns: &[S
             Standard::RotorInertia(i) => of_rotors.torques(&|moving, torques| moving.add_rotor_inertia(i, &arm.one, torques)),
             Standard::Armature(i) => single(i, state.ddqr[i].clone()),
             Standard::RotorViscous(i) => {
-                let square = arm.joints[i].motor.as_ref().map_or(arm.zero.clone(), |m| m.ratio.times(&m.ratio));
-                single(i, square.times(&state.dqr[i]))
+                let mut column = vec![arm.zero.clone(); arm.joints.len()];
+                arm.joints[i].motor.iter().for_each(|motor| motor.add_torque(&motor.spin(&arm.zero, &state.dqr), &mut column));
+                arm.of_coordinates(column)
             }
             Standard::Viscous(i) => single(i, state.dqr[i].clone()),
             Standard::Coulomb(i) => single(i, state.directions[i].clone()),
@@ -297,11 +298,7 @@ impl<E: Element> KeptAlone<'_, E> {
         let c = rows((0..n).map(|j| without_gravity(torques(&unit(j), &still))).collect());
         let at_joints = self.arm.state_of_joints(state);
         let friction = |(i, joint): (usize, &Joint<E>)| {
-            let mut viscous = self.of(Standard::Viscous(i), &joint.viscous);
-            if let Some(motor) = &joint.motor {
-                let square = motor.ratio.times(&motor.ratio);
-                viscous = viscous.plus(&square.times(&self.of(Standard::RotorViscous(i), &motor.viscous)));
-            }
+            let viscous = self.of(Standard::Viscous(i), &joint.viscous);
             let coulomb = self.of(Standard::Coulomb(i), &joint.coulomb);
             let (offset, cubic) = (self.of(Standard::Offset(i), &joint.offset), self.of(Standard::Cubic(i), &joint.cubic));
             let rate = &at_joints.dq[i];
@@ -313,7 +310,12 @@ impl<E: Element> KeptAlone<'_, E> {
         let spring = |(i, joint): (usize, &Joint<E>)| stiffness(i, joint).times(&at_joints.q[i].minus(&joint.rest));
         let springs = self.arm.of_coordinates(self.arm.joints.iter().enumerate().map(spring).collect());
         let g = g.iter().zip(springs).map(|(g, s)| g.plus(&s)).collect();
-        let f = self.arm.of_coordinates(self.arm.joints.iter().enumerate().map(friction).collect());
+        let mut f: Vec<E> = self.arm.joints.iter().enumerate().map(friction).collect();
+        for (i, motor) in self.arm.joints.iter().enumerate().filter_map(|(i, joint)| Some((i, joint.motor.as_ref()?))) {
+            let viscous = self.of(Standard::RotorViscous(i), &motor.viscous);
+            motor.add_torque(&viscous.times(&motor.spin(zero, &at_joints.dq)), &mut f);
+        }
+        let f = self.arm.of_coordinates(f);
         Parts { b, c, g, f, u: self.potential_energy(state) }
     }
 
@@ -326,13 +328,10 @@ impl<E: Element> KeptAlone<'_, E> {
             let h = [1, 2, 3].map(|k| ten[k].clone());
             sum.minus(&dot(&self.arm.gravity, &add(&scale(&ten[0], &frame.origin), &frame.direction(&h))))
         });
-        let of_masses = self.arm.joints.iter().filter_map(|joint| Some((joint.parent, joint.motor.as_ref()?))).fold(
-            of_bodies,
-            |sum, (parent, motor)| {
-                let place = parent.map_or_else(|| motor.position.clone(), |p| described.links[p].point(&motor.position));
-                sum.minus(&motor.mass.times(&dot(&self.arm.gravity, &place)))
-            },
-        );
+        let of_masses = self.arm.joints.iter().filter_map(|joint| joint.motor.as_ref()).fold(of_bodies, |sum, motor| {
+            let place = motor.carrier.map_or_else(|| motor.position.clone(), |p| described.links[p].point(&motor.position));
+            sum.minus(&motor.mass.times(&dot(&self.arm.gravity, &place)))
+        });
         let springs = spring_energy(self.arm, state, |i, joint| self.of(Standard::Stiffness(i), &joint.stiffness));
         of_masses.plus(&springs)
     }

@@ -21,7 +21,7 @@ use super::{Constant, Fault, Function, Module};
 use crate::check::Check;
 use crate::contract::{of_module, Array, Length, Returned, Sizes};
 use crate::enclosure::Float;
-use crate::program::{Argument, Step, JOINTS, NOMINAL_GRAVITY, TIPS};
+use crate::program::{Argument, Step, JOINTS, MOTORS, NOMINAL_GRAVITY, TIPS};
 
 pub(super) const COMMENTS: Comments = Comments { line: None, block: Some(("/*", "*/")), behind: "" };
 
@@ -203,6 +203,8 @@ fn constants(
             "ALL_JOINT_NAMES",
             "COUPLING",
             "COUPLING_OFFSET",
+            MOTORS,
+            "MOTOR_RATES",
             "PARAMETER_NAMES",
             "NOMINAL_PARAMETERS",
             "PARAMETER_INDEX",
@@ -226,8 +228,9 @@ fn constants(
         let left_out = match name {
             "TASK" => none("TASK_ROWS"),
             "PARAMETER_NAMES" | "NOMINAL_PARAMETERS" => none("PARAMETERS"),
-            JOINTS | NOMINAL_GRAVITY | "BASE_PARAMETERS" | "TASK_ROWS" | TIPS => !lines.peek().starts_with(&begin),
+            JOINTS | MOTORS | NOMINAL_GRAVITY | "BASE_PARAMETERS" | "TASK_ROWS" | TIPS => !lines.peek().starts_with(&begin),
             "ALL_JOINT_NAMES" | "COUPLING" | "COUPLING_OFFSET" => none(JOINTS),
+            "MOTOR_RATES" => none(MOTORS),
             "BASE_PARAMETER_NAMES" | "NOMINAL_BASE_PARAMETERS" => none("BASE_PARAMETERS"),
             _ => false,
         };

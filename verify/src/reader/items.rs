@@ -11,7 +11,7 @@ use super::sines::{self, Private};
 use crate::check::Check;
 use crate::contract::{of_module, Promise};
 use crate::enclosure::Float;
-use crate::program::{Argument, JOINTS, NOMINAL_GRAVITY, TIPS};
+use crate::program::{Argument, JOINTS, MOTORS, NOMINAL_GRAVITY, TIPS};
 use crate::reference::BASE_REGRESSOR;
 
 const LINTS: &str = "#[allow(dead_code)]";
@@ -22,7 +22,7 @@ const ALL_LINTS: &str = "#[allow(dead_code, clippy::all)]";
 pub(super) const INTO: &str = "_into";
 
 /// The permitted constants, with their types.
-const CONSTANTS: [(&str, &str); 22] = [
+const CONSTANTS: [(&str, &str); 24] = [
     ("NAME", "&str"),
     ("DOF", "usize"),
     ("JOINT_NAMES", "[&str; DOF]"),
@@ -42,6 +42,8 @@ const CONSTANTS: [(&str, &str); 22] = [
     ("ALL_JOINT_NAMES", "[&str; JOINTS]"),
     ("COUPLING", "[[Real; DOF]; JOINTS]"),
     ("COUPLING_OFFSET", "[Real; JOINTS]"),
+    (MOTORS, "usize"),
+    ("MOTOR_RATES", "[[Real; DOF]; MOTORS]"),
     ("BASE_PARAMETERS", "usize"),
     ("BASE_PARAMETER_NAMES", "[&str; BASE_PARAMETERS]"),
     ("NOMINAL_BASE_PARAMETERS", "[Real; BASE_PARAMETERS]"),

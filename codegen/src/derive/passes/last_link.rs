@@ -80,6 +80,9 @@ pub(crate) fn rotate_last_link(pool: &mut Pool, arm: &mut Arm) {
     joint.link_origin = pool.transform(&back, &joint.link_origin);
     joint.own_axes = pool.product(&back, &joint.own_axes);
     joint.own_origin = pool.transform(&back, &joint.own_origin);
+    for rotor in arm.rotors_on(i) {
+        rotor.axis = pool.transform(&back, &rotor.axis);
+    }
     for tool in arm.tools_of(i) {
         tool.rotation = pool.product(&back, &tool.rotation);
         tool.origin = pool.transform(&back, &tool.origin);
@@ -90,7 +93,8 @@ pub(crate) fn rotate_last_link(pool: &mut Pool, arm: &mut Arm) {
 mod tests {
     use super::*;
     use crate::derive::constants::field_of;
-    use crate::derive::newton_euler::{inverse_dynamics, Motion};
+    use crate::derive::motion::Motion;
+    use crate::derive::newton_euler::inverse_dynamics;
     use crate::exact::Number;
     use crate::source::Source;
 

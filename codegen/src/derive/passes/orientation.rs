@@ -134,6 +134,9 @@ fn orient(pool: &mut Pool, arm: &mut Arm, run: &[usize], reference: usize, sums:
             tool.origin = link.about_axis(pool, &tool.origin);
             tool.rotation = pool.product(&about_z, &tool.rotation);
         }
+        for rotor in arm.rotors_on(i) {
+            rotor.axis = link.about_axis(pool, &rotor.axis);
+        }
         let next = run[k + 1];
         arm.joints[next].origin = link.about_axis(pool, &arm.joints[next].origin);
         if let Some(rotor) = &mut arm.joints[next].rotor {

@@ -36,6 +36,7 @@ use crate::derive::columns::{origin_rate, Column, ColumnPropagator, Rate};
 use crate::derive::passes::RewriteScope;
 use crate::derive::plan::Plan;
 use crate::derive::quantity::{Argument, Documentation, Length, Quantity, Recursion, ResultPart, Typeset};
+use crate::derive::rotors;
 use crate::ring::matrix::{Matrix, Vector, ZERO};
 use crate::ring::{ExprId, Pool, Symbol};
 
@@ -100,6 +101,11 @@ pub fn inertia_and_coriolis(pool: &mut Pool, arm: &Arm, plan: &mut Plan) -> (Vec
             c[parent][j] = entries.coriolis;
             c[j][parent] = entries.coriolis_transposed;
         }
+    }
+    if !arm.rotors.is_empty() {
+        let rates = arm.symbols(pool, Symbol::Rate);
+        rotors::add_inertia(pool, arm, &mut b);
+        rotors::add_coriolis(pool, arm, &omega, &rates, &mut c);
     }
     (b, c)
 }

@@ -39,10 +39,12 @@ use crate::derive::arm::{symmetric, Arm, Body};
 use crate::derive::columns::ColumnPropagator;
 use crate::derive::factors::LdlFactors;
 use crate::derive::friction::{add_slopes, friction};
-use crate::derive::newton_euler::{link_motions, wrenches, LinkMotion, Motion};
+use crate::derive::motion::{link_motions, LinkMotion, Motion};
+use crate::derive::newton_euler::wrenches;
 use crate::derive::passes::RewriteScope;
 use crate::derive::plan::Plan;
 use crate::derive::quantity::{Argument, Documentation, Feature, Length, Quantity, Recursion, ResultPart, Typeset};
+use crate::derive::rotors;
 use crate::derive::wrench::{axis_component, wrench_to_parent};
 use crate::ring::matrix::Vector;
 use crate::ring::{ExprId, Pool, Symbol};
@@ -149,6 +151,7 @@ pub fn inverse_dynamics_derivatives(pool: &mut Pool, arm: &Arm, plan: &mut Plan,
     for i in 0..arm.dof() {
         by_rates[i][i] = add_slopes(pool, arm, i, by_rates[i][i]);
     }
+    rotors::add_friction_slopes(pool, arm, &mut by_rates);
     let mut by_positions = by_positions(pool, arm, motion);
     for (i, joint) in arm.joints.iter().enumerate() {
         by_positions[i][i] = pool.add(by_positions[i][i], joint.stiffness);
@@ -195,7 +198,9 @@ pub fn forward_dynamics_derivatives(pool: &mut Pool, arm: &Arm, plan: &mut Plan)
 fn by_positions(pool: &mut Pool, arm: &Arm, motion: &Motion) -> Rows {
     let n = arm.dof();
     let motions = link_motions(pool, arm, motion, true);
-    let (_, loads) = wrenches(pool, arm, motion, &motions);
+    // Without rotors of their own file, which are added as a whole.
+    let bare = Arm { rotors: Vec::new(), ..arm.clone() };
+    let (_, loads) = wrenches(pool, &bare, motion, &motions);
     let composite = composite_bodies(pool, arm);
     let omega = coriolis::angular_velocities(pool, arm);
     let velocity_moments = coriolis::velocity_moments(pool, arm, &composite);
@@ -222,6 +227,7 @@ fn by_positions(pool: &mut Pool, arm: &Arm, motion: &Motion) -> Rows {
                 torque_derivative(pool, arm.joints[parent].is_revolute(), &axes[parent], propagated.in_link_frame());
         }
     }
+    rotors::add_position_derivatives(pool, arm, motion, &motions, &mut derivative);
     derivative
 }
 

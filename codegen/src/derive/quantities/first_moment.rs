@@ -87,7 +87,8 @@ fn no_center_of_mass(model: &Model, with_parameters: bool) -> Option<String> {
 fn total_mass(pool: &mut Pool, arm: &Arm, model: &Model, view: View<'_>) -> ExprId {
     let carried: Vec<ExprId> = arm.joints.iter().map(|joint| joint.body.mass).collect();
     let mut total = pool.sum(carried);
-    for motor in model.manipulator.joints.iter().filter(|joint| joint.parent.is_none()).filter_map(|joint| joint.motor.as_ref()) {
+    for motor in model.manipulator.joints.iter().filter_map(|joint| joint.motor.as_ref()).filter(|motor| motor.carrier.is_none())
+    {
         let rotor = view.polynomial(pool, &model.manipulator, &motor.mass);
         total = pool.add(total, rotor);
     }

@@ -33,6 +33,10 @@ pub static FRICTION: Quantity = Quantity {
         "Smooth friction has F_c tanh(dq_i / v) in place of F_c sign(dq_i), v the number of its joint.",
     )
     .with(Feature::Stribeck, "Stribeck friction adds F_s sign(dq_i) exp(-|dq_i| / v_s), with the numbers of its joint.")
+    .with(
+        Feature::CoupledMotor,
+        "A motor with `coupling` adds F_m N' N dq in place of k_r² F_m dq_i, N its row of {MOTOR_RATES}.",
+    )
     .with(Feature::LoadFriction, "What grows with the load of a joint depends on q and is {load_friction}."),
     recursion: Recursion::new(RewriteScope::KeepParameters, |pool, arm, _, _| {
         let rates = arm.symbols(pool, Symbol::Rate);

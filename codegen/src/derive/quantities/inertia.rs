@@ -8,12 +8,14 @@
 //! ```
 //!
 //! The rotor of joint i adds I_m k² on the diagonal and, as it rides on the parent link, the moment I_m k z_m there: this couples the joints.
+//! Rotors elsewhere, and those that spin with several joints: `rotors.rs`.
 
 use crate::derive::arm::{Arm, Body};
 use crate::derive::columns::{Column, ColumnPropagator};
 use crate::derive::passes::RewriteScope;
 use crate::derive::plan::Plan;
 use crate::derive::quantity::{Argument, Documentation, Length, Quantity, Recursion, ResultPart, Typeset};
+use crate::derive::rotors;
 use crate::kinds::JointKind;
 use crate::ring::matrix::Vector;
 use crate::ring::{ExprId, Pool};
@@ -74,5 +76,6 @@ pub fn inertia_matrix(pool: &mut Pool, arm: &Arm, plan: &mut Plan) -> Vec<Vec<Ex
             b[j][parent] = b[parent][j];
         }
     }
+    rotors::add_inertia(pool, arm, &mut b);
     b
 }

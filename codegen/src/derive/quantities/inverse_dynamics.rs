@@ -1,7 +1,8 @@
 //! Inverse dynamics by Newton and Euler's equations: tau = B ddq + C dq + F + g.
 
 use super::load_friction::add_load_friction;
-use crate::derive::newton_euler::{inverse_dynamics, Motion};
+use crate::derive::motion::Motion;
+use crate::derive::newton_euler::inverse_dynamics;
 use crate::derive::passes::RewriteScope;
 use crate::derive::quantity::{Argument, Documentation, Feature, Length, Quantity, Recursion, ResultPart, Typeset};
 

@@ -7,6 +7,7 @@
 use crate::derive::arm::{symmetric, Arm};
 use crate::derive::passes::RewriteScope;
 use crate::derive::quantity::{Argument, Documentation, Quantity, Recursion, ResultPart, Typeset};
+use crate::derive::rotors;
 use crate::ring::matrix::{Vector, ZERO};
 use crate::ring::{ExprId, Pool, Symbol};
 
@@ -77,5 +78,8 @@ pub fn kinetic_energy(pool: &mut Pool, arm: &Arm) -> ExprId {
         let energy = pool.mul(momentum, rates[i]);
         twice = pool.add(twice, energy);
     }
+    let omegas: Vec<Vector> = motions.iter().map(|(omega, _)| *omega).collect();
+    let of_rotors = rotors::twice_energy(pool, arm, &omegas, &rates);
+    twice = pool.add(twice, of_rotors);
     pool.mul(half, twice)
 }

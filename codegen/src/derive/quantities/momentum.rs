@@ -21,6 +21,7 @@
 use crate::derive::arm::{symmetric, Arm};
 use crate::derive::passes::RewriteScope;
 use crate::derive::quantity::{Argument, Documentation, Feature, Length, Quantity, Recursion, ResultPart, Typeset};
+use crate::derive::rotors;
 use crate::derive::wrench::{axis_component, wrench_to_parent};
 use crate::ring::matrix::{Vector, ZERO};
 use crate::ring::{ExprId, Pool, Symbol};
@@ -88,7 +89,7 @@ pub fn momentum(pool: &mut Pool, arm: &Arm) -> Vec<ExprId> {
 /// C(q, dq)' dq.
 pub fn coriolis_transpose_times(pool: &mut Pool, arm: &Arm) -> Vec<ExprId> {
     let (_, states) = momenta(pool, arm);
-    states
+    let mut gradient: Vec<ExprId> = states
         .iter()
         .zip(&arm.joints)
         .map(|(State { omega: w, velocity: v, linear: f, angular: n }, joint)| {
@@ -98,7 +99,14 @@ pub fn coriolis_transpose_times(pool: &mut Pool, arm: &Arm) -> Vec<ExprId> {
                 pool.dot(&[f[0], -f[1]], &[w[1], w[0]])
             }
         })
-        .collect()
+        .collect();
+    let rates = arm.symbols(pool, Symbol::Rate);
+    rotors::add_energy_gradient(pool, arm, &omegas(&states), &rates, &mut gradient);
+    gradient
+}
+
+fn omegas(states: &[State]) -> Vec<Vector> {
+    states.iter().map(|state| state.omega).collect()
 }
 
 fn momenta(pool: &mut Pool, arm: &Arm) -> (Vec<ExprId>, Vec<State>) {
@@ -150,5 +158,6 @@ fn momenta(pool: &mut Pool, arm: &Arm) -> (Vec<ExprId>, Vec<State>) {
             states[parent].angular = pool.add_vectors(&states[parent].angular, &angular);
         }
     }
+    rotors::add_momentum(pool, arm, &omegas(&states), &rates, &mut p);
     (p, states)
 }

@@ -2,7 +2,8 @@
 //!
 //! How its columns are derived is in `derive/regressor.rs`, since the base parameters are found by their rank.
 
-use crate::derive::newton_euler::{inverse_dynamics, Motion};
+use crate::derive::motion::Motion;
+use crate::derive::newton_euler::inverse_dynamics;
 use crate::derive::parameters::View;
 use crate::derive::passes::RewriteScope;
 use crate::derive::quantity::{Argument, Documentation, Feature, Length, Quantity, Recursion, ResultPart, Typeset};

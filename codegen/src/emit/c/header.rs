@@ -145,6 +145,13 @@ pub(super) fn macros(module: &Module) -> String {
         let _ = writeln!(text, "#define {upper}_COUPLING {}", braces(rows));
         let _ = writeln!(text, "#define {upper}_COUPLING_OFFSET {}\n", numbers(&coupling.offsets));
     }
+    if let Some(motors) = &module.motors {
+        let rows = motors.rates.iter().map(|row| braces(row.iter().map(|value| constant(value, module.scalar)).collect()));
+        let joints = motors.joints.join(", ");
+        let _ = writeln!(text, "\n/* N of the rotor speeds N dq beside the links that carry the rotors, a row for each motor, of the joints {joints}. */");
+        let _ = writeln!(text, "#define {upper}_MOTORS {}", motors.joints.len());
+        let _ = writeln!(text, "#define {upper}_MOTOR_RATES {}\n", braces(rows.collect()));
+    }
     if !module.parameters.is_empty() {
         let names = module.parameters.iter().map(|parameter| format!("\"{}\"", parameter.name)).collect();
         let nominal = module.parameters.iter().map(|parameter| constant(&parameter.nominal, module.scalar)).collect();

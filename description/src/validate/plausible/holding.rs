@@ -129,9 +129,9 @@ fn most_asked(arm: &Manipulator) -> Vec<f64> {
             joint.link.iter().map(|part| (value(arm, &part.body.mass), part.body.com.each_ref().map(|x| value(arm, x)))).collect()
         })
         .collect();
-    for joint in &arm.joints {
-        if let (Some(motor), Some(parent)) = (&joint.motor, joint.parent) {
-            carried[parent.index()].push((value(arm, &motor.mass), motor.position.each_ref().map(|x| value(arm, x))));
+    for motor in arm.joints.iter().filter_map(|joint| joint.motor.as_ref()) {
+        if let Some(carrier) = motor.carrier {
+            carried[carrier.index()].push((value(arm, &motor.mass), motor.position.each_ref().map(|x| value(arm, x))));
         }
     }
     for load in arm.loads() {

@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use super::place::Place;
 use crate::contract::Sizes;
 use crate::enclosure::Float;
-use crate::program::{JOINTS, NOMINAL_GRAVITY, TIPS};
+use crate::program::{JOINTS, MOTORS, NOMINAL_GRAVITY, TIPS};
 use crate::reader::constant::Constant;
 use crate::reader::lexer::Fault;
 use crate::reader::{constant_of, tips_of, OF_TIP};
@@ -39,7 +39,7 @@ pub(in crate::reader) enum Entry {
 }
 
 /// The permitted constants: name, kind of entries, and nesting depth of arrays.
-pub(in crate::reader) const CONSTANTS: [(&str, Entry, usize); 23] = [
+pub(in crate::reader) const CONSTANTS: [(&str, Entry, usize); 25] = [
     ("NAME", Entry::Text, 0),
     ("DOF", Entry::Integer, 0),
     ("JOINT_NAMES", Entry::Text, 1),
@@ -53,6 +53,8 @@ pub(in crate::reader) const CONSTANTS: [(&str, Entry, usize); 23] = [
     ("ALL_JOINT_NAMES", Entry::Text, 1),
     ("COUPLING", Entry::Real, 2),
     ("COUPLING_OFFSET", Entry::Real, 1),
+    (MOTORS, Entry::Integer, 0),
+    ("MOTOR_RATES", Entry::Real, 2),
     ("TASK_ROWS", Entry::Integer, 0),
     ("TASK", Entry::Integer, 1),
     (TIPS, Entry::Text, 1),
@@ -67,7 +69,7 @@ pub(in crate::reader) const CONSTANTS: [(&str, Entry, usize); 23] = [
 
 /// Whether only the modules of some arms have a constant.
 pub(in crate::reader) fn is_of_some_arms(name: &str) -> bool {
-    const OF_COUPLING: [&str; 4] = [JOINTS, "ALL_JOINT_NAMES", "COUPLING", "COUPLING_OFFSET"];
+    const OF_COUPLING: [&str; 6] = [JOINTS, "ALL_JOINT_NAMES", "COUPLING", "COUPLING_OFFSET", MOTORS, "MOTOR_RATES"];
     [NOMINAL_GRAVITY, TIPS, "TASK_ROWS", "TASK"].contains(&name) || OF_COUPLING.contains(&name) || name.contains("BASE_")
 }
 
