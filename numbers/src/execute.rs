@@ -147,8 +147,35 @@ pub struct Run<'a, T> {
     states: usize,
 }
 
+/// All states of a run, in blocks.
+struct Blocks<'a, T> {
+    run: &'a Run<'a, T>,
+    result: &'a mut [T],
+    workspace: &'a mut Workspace<T>,
+}
+
 // Everything here is inlined into the function that uses the processor's own instructions. Code that is not inlined cannot use
-// them.
+// them: a closure in place of this type is not, and takes twice the time.
+impl<T: Scalar> pulp::NullaryFnOnce for Blocks<'_, T> {
+    type Output = ();
+
+    #[inline(always)]
+    fn call(self) {
+        let Blocks { run, result, workspace } = self;
+        let mut at = 0;
+        if !workspace.large.is_empty() {
+            while run.states - at > SMALL * LANES {
+                run.block::<LANES, LARGE>(&mut workspace.large, at, result);
+                at = run.states.min(at + LARGE * LANES);
+            }
+        }
+        while at < run.states {
+            run.block::<LANES, SMALL>(&mut workspace.small, at, result);
+            at = run.states.min(at + SMALL * LANES);
+        }
+    }
+}
+
 impl<T: Scalar> Run<'_, T> {
     /// All states, in blocks.
     #[inline(always)]
@@ -156,22 +183,7 @@ impl<T: Scalar> Run<'_, T> {
         match self.states {
             0 => {}
             1 => self.block::<1, 1>(&mut workspace.alone, 0, result),
-            states => self.program.processor.dispatch(
-                #[inline(always)]
-                || {
-                    let mut at = 0;
-                    if !workspace.large.is_empty() {
-                        while states - at > SMALL * LANES {
-                            self.block::<LANES, LARGE>(&mut workspace.large, at, result);
-                            at = states.min(at + LARGE * LANES);
-                        }
-                    }
-                    while at < states {
-                        self.block::<LANES, SMALL>(&mut workspace.small, at, result);
-                        at = states.min(at + SMALL * LANES);
-                    }
-                },
-            ),
+            _ => self.program.processor.dispatch(Blocks { run: self, result, workspace }),
         }
     }
 

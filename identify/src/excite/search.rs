@@ -1,4 +1,4 @@
-//! The search for a motion: many starts, limited-memory quasi-Newton steps, limits by an augmented Lagrangian on samples.
+//! The search for a motion: many starts, changes of the best, limited-memory quasi-Newton steps, limits by an augmented Lagrangian on samples.
 //!
 //! Minimised is -log det M per column, M the mean over time of A'A with rows of A divided by E. Its derivative by A is -2 A M^-1, from
 //! where tapes go back to q, dq, ddq. Limits are |x - middle| <= half; their multipliers belong to samples.
@@ -504,12 +504,30 @@ impl Search<'_> {
             let x = self.start(&mut Random(*seed), &self.grid(COARSE));
             improved(&x, COARSE, &FIRST)
         });
-        for (kept, rounds) in [(SECOND_STARTS, &SECOND[..]), (THIRD_STARTS, &THIRD[..])] {
-            sort(&mut all);
-            all.truncate(kept);
-            all = parallel_map(&all, |(_, x)| improved(x, COARSE, rounds));
-        }
         sort(&mut all);
+        all.truncate(SECOND_STARTS);
+        all = parallel_map(&all, |(_, x)| improved(x, COARSE, &SECOND));
+        sort(&mut all);
+        // Joints of the best motion begin anew: it is nearer to the next better one than any random start.
+        let columns = self.coordinates();
+        for round in 0..ROUNDS_OF_CHANGES {
+            let best = all[0].1.clone();
+            let tries: Vec<u64> =
+                (0..CHANGES as u64).map(|k| seeds[0].wrapping_sub((round * CHANGES as u64 + k + 1) << 32)).collect();
+            all.truncate(1);
+            all.extend(parallel_map(&tries, |seed| {
+                let mut random = Random(*seed);
+                let (fresh, mut x) = (self.start(&mut random, &self.grid(COARSE)), best.clone());
+                for _ in 0..CHANGED_JOINTS {
+                    let from = columns * (random.unit() * self.model.joints as f64) as usize;
+                    x[from..from + columns].copy_from_slice(&fresh[from..from + columns]);
+                }
+                improved(&x, COARSE, &SECOND)
+            }));
+            sort(&mut all);
+        }
+        all.truncate(1);
+        all = parallel_map(&all, |(_, x)| improved(x, COARSE, &THIRD));
         all.into_iter().next().filter(|([objective, _], _)| objective.is_finite()).map(|(_, x)| x)
     }
 }
@@ -527,10 +545,13 @@ const COARSE: usize = 64;
 const FINE: usize = 200;
 /// Starts, and how many go on.
 const STARTS: usize = 24;
-const SECOND_STARTS: usize = 6;
-const THIRD_STARTS: usize = 2;
+const SECOND_STARTS: usize = 4;
+/// Changes of the best motion in a round, and the joints that one changes.
+const ROUNDS_OF_CHANGES: u64 = 8;
+const CHANGES: usize = 6;
+const CHANGED_JOINTS: usize = 2;
 /// Calls of `done` in a search.
-pub(super) const PARTS: usize = STARTS + SECOND_STARTS + THIRD_STARTS;
+pub(super) const PARTS: usize = STARTS + SECOND_STARTS + ROUNDS_OF_CHANGES as usize * CHANGES + 1;
 /// Weights of violations, and steps.
 const FIRST: [(f64, usize); 2] = [(3.0, 30), (5.0, 20)];
 const SECOND: [(f64, usize); 3] = [(5.0, 50), (8.0, 30), (12.0, 30)];
