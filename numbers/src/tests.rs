@@ -2,6 +2,10 @@
 
 use super::*;
 
+#[cfg(target_arch = "x86_64")]
+#[path = "../../tests/src/installed.rs"]
+mod installed;
+
 /// A generator of random numbers (SplitMix64: Steele, Lea, Flood, 2014).
 struct Random(u64);
 
@@ -283,4 +287,20 @@ fn slices_of_other_lengths_are_refused() {
     assert_eq!(refused(&[&q[..5], &dq], 8), "`q` has 5 numbers, not 3 for all states, nor 3 for each of 2 states");
     let mut foreign = Workspace::default();
     assert_eq!(program.run(&[&q, &dq], &mut [0.0; 8], &mut foreign), Err(Mismatch::Workspace));
+}
+
+/// No result tells which instructions computed it, so this test reads its own: code that is not inlined has none of AVX2.
+#[cfg(target_arch = "x86_64")]
+#[test]
+fn blocks_have_instructions_of_four_numbers() {
+    if !installed::there("objdump", "binutils") {
+        return;
+    }
+    let own = std::env::current_exe().expect("the test's program");
+    let listing =
+        std::process::Command::new("objdump").args(["-d", "--no-show-raw-insn"]).arg(own).output().expect("objdump runs");
+    let listing = String::from_utf8_lossy(&listing.stdout);
+    let of = |name: &str| listing.lines().filter(|line| line.contains(name) && line.contains("%ymm")).count();
+    // Each instruction of a program has eight groups of eight numbers.
+    assert!(of("vmulpd") >= 20 && of("vaddpd") >= 20, "{} products, {} sums", of("vmulpd"), of("vaddpd"));
 }
