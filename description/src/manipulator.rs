@@ -442,20 +442,6 @@ impl Manipulator {
         self.joints.iter().any(|joint| joint.has(Feature::LoadFriction))
     }
 
-    /// The first joint whose friction depends on its rate otherwise than by the sign and linearly, by its index: the code of a refusal and
-    /// the name of that friction.
-    pub fn curved_friction(&self) -> Option<(usize, &'static str, &'static str)> {
-        let is_given = |p: &Polynomial| !p.evaluate(&|ParameterId(i)| self.parameters[i as usize].nominal.clone()).is_zero();
-        self.joints.iter().enumerate().find_map(|(i, joint)| {
-            let stribeck = joint.stribeck.as_ref().map(|stribeck| &stribeck.torque);
-            let curved = joint.cubic.iter().chain(stribeck).any(is_given);
-            match &joint.smooth {
-                Some(_) => Some((i, "smooth-friction", "smooth")),
-                None => curved.then_some((i, "friction-not-treated", "cubic or Stribeck")),
-            }
-        })
-    }
-
     /// The joint that carries each one, by its index.
     pub fn parents(&self) -> impl Iterator<Item = Option<usize>> + '_ {
         self.joints.iter().map(|joint| joint.parent.map(LinkId::index))

@@ -119,6 +119,8 @@ fn tables(paths: u64, chance: f64) -> Tally {
     all.add(&table("ur5, friction", &chain::ur5(), UR5_LIMITS, [3.0; 6], paths, chance));
     let range = [2.5, 1.7, 2.5, 1.5, 2.5, 1.8, 2.5];
     all.add(&table("panda, friction", &chain::panda(), PANDA_LIMITS, range, paths, chance));
+    let curved = chain::scara().with_curved_friction(SCARA_LIMITS, 0.2, 0.1);
+    all.add(&table("scara, curved friction", &curved, SCARA_LIMITS, [2.0, 2.0, 0.3, 3.0], paths, chance));
     all
 }
 

@@ -95,7 +95,7 @@ fn worst<const N: usize>(
         for place in 0..=places {
             let t = place as f64 / places as f64;
             // Inside: at the ends the sign of a rate may be that of the neighbour.
-            let t = 1e-12 + (1.0 - 2e-12) * t;
+            let t = 1e-9 + (1.0 - 2e-9) * t;
             let progress = timing.at(i, t).expect("a segment");
             assert!(progress.ds > 0.0, "at rest at {t} of segment {i}");
             let at = timing.reference(&progress);
@@ -114,6 +114,19 @@ const FREE: f64 = f64::INFINITY;
 fn table<const N: usize>(
     name: &str,
     chain: &Chain<N>,
+    bounds: ([f64; N], [f64; N]),
+    acceleration: [f64; N],
+    range: [f64; N],
+    paths: u64,
+) {
+    table_within(1000, name, chain, bounds, acceleration, range, paths);
+}
+
+/// The same with so many segments at most.
+fn table_within<const N: usize>(
+    segments: usize,
+    name: &str,
+    chain: &Chain<N>,
     (velocity, effort): ([f64; N], [f64; N]),
     acceleration: [f64; N],
     range: [f64; N],
@@ -128,7 +141,7 @@ fn table<const N: usize>(
     let (mut gaps, mut shares, mut counts) = (Vec::new(), 0.0f64, Vec::new());
     for seed in 0..paths {
         let path = random_path(&mut random(seed + 1), range);
-        with_timing(chain, &path, &limits, Ends { hold: false, ..Ends::at_rest() }, 1e-3, 1000, |timing| {
+        with_timing(chain, &path, &limits, Ends { hold: false, ..Ends::at_rest() }, 1e-3, segments, |timing| {
             let timing = timing.unwrap_or_else(|error| panic!("{name}, path {seed}: {error}"));
             gaps.push(timing.gap());
             counts.push(timing.segments());
@@ -154,6 +167,23 @@ fn few_random_paths_are_timed_to_a_thousandth() {
     table("scara", &chain::scara(), SCARA_LIMITS, [FREE; 4], [2.5, 2.5, 0.3, 3.0], 2);
     table("ur5", &chain::ur5().without_friction(), UR5_LIMITS, [FREE; 6], [3.0; 6], 1);
     table("ur5, friction", &chain::ur5(), UR5_LIMITS, [FREE; 6], [3.0; 6], 1);
+    let curved = chain::scara().with_curved_friction(SCARA_LIMITS, 0.2, 0.1);
+    table("scara, curved friction", &curved, SCARA_LIMITS, [FREE; 4], [2.5, 2.5, 0.3, 3.0], 1);
+}
+
+/// Cubic friction of a fifth of the torque at the limit of speed, and Stribeck friction of a tenth of it that is gone at a tenth of that speed.
+#[test]
+#[ignore = "wide"]
+fn random_paths_with_curved_friction_are_timed_to_a_thousandth() {
+    let of_panda = [2.5, 1.7, 2.5, 1.5, 2.5, 1.8, 2.5];
+    let scara = chain::scara().with_curved_friction(SCARA_LIMITS, 0.2, 0.1);
+    table_within(1500, "scara", &scara, SCARA_LIMITS, [FREE; 4], [2.5, 2.5, 0.3, 3.0], 100);
+    let ur5 = chain::ur5().with_curved_friction(UR5_LIMITS, 0.2, 0.1);
+    table_within(1500, "ur5", &ur5, UR5_LIMITS, [FREE; 6], [3.0; 6], 100);
+    let negative = chain::ur5().with_curved_friction(UR5_LIMITS, -0.05, 0.1);
+    table_within(1500, "ur5, negative", &negative, UR5_LIMITS, [FREE; 6], [3.0; 6], 50);
+    let panda = chain::panda().with_curved_friction(PANDA_LIMITS, 0.2, 0.1);
+    table_within(1500, "panda", &panda, PANDA_LIMITS, [FREE; 7], of_panda, 100);
 }
 
 #[test]
@@ -244,6 +274,37 @@ fn a_slide_with_friction_has_the_time_of_its_closed_form() {
     // The same path backwards, and with s in other units.
     for unit in [1e-6, 1e6] {
         inside("slide in other units", &slide, &line(unit, [way], [0.0]), [[3.0], [force]], after(left).1);
+    }
+}
+
+/// m v' = F - f(v), then m v' = -F - f(v): times and ways by Simpson's rule over v, and the speed of the switch by bisection.
+#[test]
+fn a_slide_with_curved_friction_has_the_time_of_its_integrals() {
+    let (mass, force, way) = (2.0, 10.0, 0.5);
+    for (cubic, stribeck, velocity) in [(1.5, 0.0, 0.0), (-0.4, 0.0, 0.0), (0.0, 4.0, 0.2), (1.0, 3.0, 0.05)] {
+        let mut slide = one_joint(true, [0.7, 1.0], [0.0; 3], mass);
+        (slide.friction[0].cubic, slide.friction[0].stribeck, slide.friction[0].stribeck_velocity) = (cubic, stribeck, velocity);
+        let decay = |v: f64| if stribeck > 0.0 { stribeck * (-v / velocity).exp() } else { 0.0 };
+        let friction = |v: f64| 0.7 * v + 1.0 + cubic * v.powi(3) + decay(v);
+        let simpson = |f: &dyn Fn(f64) -> f64, to: f64| {
+            let h = to / 4000.0;
+            let weight = |i: i32| [2.0, 4.0][i as usize % 2];
+            let inner: f64 = (1..4000).map(|i| weight(i) * f(h * f64::from(i))).sum();
+            (f(0.0) + inner + f(to)) * h / 3.0
+        };
+        let after = |top: f64| {
+            let of = |power: i32| {
+                simpson(&|v| mass * v.powi(power) * (1.0 / (force - friction(v)) + 1.0 / (force + friction(v))), top)
+            };
+            (of(1), of(0))
+        };
+        let (mut left, mut right) = (0.0, 1.6);
+        for _ in 0..60 {
+            let middle = 0.5 * (left + right);
+            *(if after(middle).0 < way { &mut left } else { &mut right }) = middle;
+        }
+        inside("slide", &slide, &line(1.0, [0.0], [way]), [[3.0], [force]], after(left).1);
+        inside("slide, backwards", &slide, &line(1e3, [way], [0.0]), [[3.0], [force]], after(left).1);
     }
 }
 

@@ -8,6 +8,8 @@
 //! tau = m u + c x + v sqrt(x) + d,    m = B q',  c = B q'' + C(q, q') q',  v = F_v q',  d = g + sign(q') (F_c + F_l |g|) + F_0
 //! ```
 //!
+//! and sign(q') (F_3 |dq|³ + F_s exp(-|dq|/v_s)) of cubic and Stribeck friction (`curve.rs`).
+//!
 //! - **The motion.** Each limit is an inequality of polynomials on a segment, proved by Bernstein coefficients on halves (`bernstein.rs`).
 //! - **The bound.** A barrier X has m > 0 and m U + c X + v sqrt(X) + d >= limit on a segment. No motion crosses it upwards, so x <= X at
 //!   its left end implies x <= X on the segment. With m < 0 the same holds from the right end, and a bound of speed holds everywhere.
@@ -15,6 +17,7 @@
 //!   exclude all larger x. The durations of all barriers add up.
 
 mod bernstein;
+mod curve;
 mod taylor;
 
 use serde_json::Value;
@@ -30,6 +33,7 @@ use crate::equations::pose::Pose;
 use crate::equations::state::State;
 use crate::float::Arguments;
 use bernstein::{at_most_zero, Square};
+use curve::Curve;
 use taylor::{Constants, Range, Taylor};
 
 /// The content of a file that is proved.
@@ -269,12 +273,13 @@ fn inverse_tangent(mut z: Range) -> Option<Range> {
     Some(factor.times(sum))
 }
 
-/// A limit on a segment: m u + c x + v sqrt(x) + d <= 0.
+/// A limit on a segment: m u + c x + v sqrt(x) + d <= 0, and a curve over dq² besides.
 struct Row {
     m: Taylor,
     c: Taylor,
     v: Taylor,
     d: Taylor,
+    curve: Option<Curve>,
 }
 
 /// The functions of a segment.
@@ -296,18 +301,48 @@ struct Checker {
 /// Pairs of rows that exclude larger and larger x, at most.
 const LONGEST_CHAIN: usize = 64;
 
-/// A sum of two rows without u, from below: c x + v sqrt(x) + d.
-struct Sum([Range; 3]);
+/// A sum of two rows without u, from below: c x + v sqrt(x) + d, and curves over x.
+#[derive(Clone)]
+struct Sum {
+    terms: [Range; 3],
+    curves: Vec<Curve>,
+    /// Another one that has to be above 0, too.
+    other: Option<Box<Sum>>,
+}
 
 impl Sum {
     fn value(&self, x: f64) -> f64 {
-        let [c, v, d] = self.0;
-        c.times(Range::of(x)).plus(v.times(Range::of(x).root().unwrap_or(Range::ALL))).plus(d).low
+        let [c, v, d] = self.terms;
+        let sum = c.times(Range::of(x)).plus(v.times(Range::of(x).root().unwrap_or(Range::ALL))).plus(d);
+        self.curves.iter().fold(sum, |sum, curve| sum.plus(curve.value(x))).low
+    }
+
+    /// An x up to which the sum is above 0 behind `from`, as [`Sum::straight`] finds it, with curves replaced by lines below.
+    fn reach(&self, from: f64, top: f64) -> Option<f64> {
+        let top = match &self.other {
+            Some(other) => top.min(other.reach(from, top)?),
+            None => top,
+        };
+        if self.curves.is_empty() {
+            return self.straight(from, top).map(|end| if self.other.is_some() { end.min(top) } else { end });
+        }
+        // Longer parts have lines farther off.
+        let ends = [3.0, 0.5, 0.1, 0.02, 4e-3, 8e-4, 1e-4].into_iter().filter_map(|width| {
+            let to = (from * (1.0 + width)).min(top);
+            let mut of = Sum { curves: Vec::new(), other: None, ..self.clone() };
+            for curve in &self.curves {
+                let [slope, height] = curve.negated().line(from, to, from).filter(|_| from < to)?;
+                let [c, _, d] = &mut of.terms;
+                (*c, *d) = (c.minus(slope), d.minus(height));
+            }
+            of.straight(from, to).map(|end| end.min(to))
+        });
+        ends.reduce(f64::max)
     }
 
     /// An x up to which the sum is above 0 behind `from`, infinity where it is so for good; `None` where that is not known.
-    fn reach(&self, from: f64, top: f64) -> Option<f64> {
-        let [c, v, d] = self.0.map(|x| x.low);
+    fn straight(&self, from: f64, top: f64) -> Option<f64> {
+        let [c, v, d] = self.terms.map(|x| x.low);
         if !(self.value(from) >= 0.0 && [c, v, d].iter().all(|x| x.is_finite())) {
             return None;
         }
@@ -322,7 +357,7 @@ impl Sum {
         }
         if c > 0.0 {
             // It falls until z = -v/2c, and rises behind.
-            let [c, v, d] = self.0;
+            let [c, v, d] = self.terms;
             let least = v.times(v).over(c.times(Range::of(4.0))).map_or(f64::NEG_INFINITY, |by| d.minus(by).low);
             if least > 0.0 {
                 return Some(f64::INFINITY);
@@ -355,8 +390,8 @@ impl Checker {
         }
         let parameters = Arm::nominal(&Constants, manipulator).ok_or("a parameter has no value")?;
         let arm = Arm::new(&Constants, manipulator, &parameters).ok_or("the arm has no numbers")?;
-        if let Some((i, _, friction)) = manipulator.curved_friction() {
-            return Err(format!("joint `{}` has {friction} friction, which is not treated", file.joints[i]));
+        if let Some(i) = manipulator.joints.iter().position(|joint| joint.smooth.is_some()) {
+            return Err(format!("joint `{}` has smooth friction, which is not treated", file.joints[i]));
         }
         let range = |joint: &armgen_description::manipulator::Joint| {
             joint.limits.position.as_ref().map(|range| range.clone().map(|x| x.to_f64()))
@@ -426,19 +461,21 @@ impl Checker {
             c: c.clone(),
             v,
             d: d.minus(&bound(limit)),
+            curve: None,
         };
         let lower = |m: &Taylor, c: &Taylor, v: Taylor, d: Taylor, limit: f64| Row {
             m: m.negated(),
             c: c.negated(),
             v: v.negated(),
             d: bound(limit).minus(&d),
+            curve: None,
         };
         let (rate, curvature) = (&of.rate[joint], &of.curvature[joint]);
         Some(match kind {
             Kind::Speed => {
                 let limit = Range::of(limits.velocity[joint]?);
                 let d = Taylor::constant(limit.times(limit).negated());
-                Row { m: zero.clone(), c: rate.times(rate), v: zero, d }
+                Row { m: zero.clone(), c: rate.times(rate), v: zero, d, curve: None }
             }
             Kind::AccelerationHigh => upper(rate, curvature, zero.clone(), zero, limits.acceleration[joint]?),
             Kind::AccelerationLow => lower(rate, curvature, zero.clone(), zero, -limits.acceleration[joint]?),
@@ -449,12 +486,21 @@ impl Checker {
                 let motor = arm.motor.as_ref().map(|motor| motor.rates[0].1.times(&motor.rates[0].1).times(&motor.viscous));
                 let viscous = motor.map_or_else(|| arm.viscous.clone(), |motor| motor.plus(&arm.viscous));
                 let dry = arm.coulomb.plus(&arm.load.times(&g.magnitude()));
-                let d = g.plus(&dry.directed(rate)).plus(&arm.offset);
+                let mut d = g.plus(&dry.directed(rate)).plus(&arm.offset);
                 let v = viscous.times(rate);
+                let [cubic, stribeck, velocity] = [&arm.cubic, &arm.stribeck, &arm.stribeck_velocity].map(|of| of.terms[0]);
+                let mut curve = None;
+                if [cubic, stribeck] != [Range::ZERO; 2] {
+                    match rate.direction() {
+                        Some(sign) => curve = Some(Curve { cubic, stribeck, velocity }.times(sign)),
+                        // Nothing is proved of a joint that turns round within a segment.
+                        None => d.rest = Range::ALL,
+                    }
+                }
                 if kind == Kind::TorqueHigh {
-                    upper(m, c, v, d, high?)
+                    Row { curve, ..upper(m, c, v, d, high?) }
                 } else {
-                    lower(m, c, v, d, low?)
+                    Row { curve: curve.map(|curve| curve.negated()), ..lower(m, c, v, d, low?) }
                 }
             }
         })
@@ -478,7 +524,8 @@ impl Checker {
             for (kind, text) in KINDS {
                 let Some(row) = self.row(of, joint, kind) else { continue };
                 let smooth = row.m.times(&u).plus(&row.c.times(&x)).plus(&row.d);
-                at_most_zero(&smooth, Some((&row.v, &x)), &law.square())
+                let curved = row.curve.map(|curve| (curve, of.rate[joint].times(&of.rate[joint]).times(&x)));
+                at_most_zero(&smooth, Some((&row.v, &x)), curved.as_ref(), &law.square())
                     .map_err(|t| segment(format!("the motion may exceed the limit `{name} {text}`"), t))?;
             }
             if let Some([low, high]) = self.ranges[joint] {
@@ -487,7 +534,7 @@ impl Checker {
                 for side in [above, below] {
                     // A path that ends at a limit keeps it to rounding.
                     let side = side.minus(&Taylor::constant(Range::of((high - low) * 1e-9)));
-                    at_most_zero(&side, None, &law.square())
+                    at_most_zero(&side, None, None, &law.square())
                         .map_err(|t| segment(format!("joint `{name}` may leave its range"), t))?;
                 }
             }
@@ -518,11 +565,13 @@ impl Checker {
         if let Some(m) = m {
             // Above zero, not at it.
             let m = m.plus(&Taylor::constant(Range::of(f64::MIN_POSITIVE)));
-            at_most_zero(&m, None, &law.square()).map_err(|t| fault("has an inertial term that may vanish", t))?;
+            at_most_zero(&m, None, None, &law.square()).map_err(|t| fault("has an inertial term that may vanish", t))?;
         }
         let (x, u) = (law.taylor(), law.acceleration(of.h).ok_or_else(|| fault("has no length", 0.0))?);
         let smooth = row.m.times(&u).plus(&row.c.times(&x)).plus(&row.d).negated();
-        at_most_zero(&smooth, Some((&row.v.negated(), &x)), &law.square()).map_err(|t| fault("may let a motion through", t))
+        let curved = row.curve.map(|curve| (curve.negated(), of.rate[joint].times(&of.rate[joint]).times(&x)));
+        at_most_zero(&smooth, Some((&row.v.negated(), &x)), curved.as_ref(), &law.square())
+            .map_err(|t| fault("may let a motion through", t))
     }
 
     /// Pairs of rows at the end (`t` = 1) or the start (-1) of a segment: where their sum is above 0, no u keeps both. And the x that no speed
@@ -532,29 +581,46 @@ impl Checker {
         let (mut top, mut rows, mut flat) = (f64::INFINITY, Vec::new(), Vec::new());
         for joint in 0..self.file.joints.len() {
             for (kind, _) in KINDS {
-                let Some(Row { m, c, v, d }) = self.row(of, joint, kind) else { continue };
-                let (m, c, v, d) = (at(&m), at(&c), at(&v), at(&d));
+                let Some(Row { m, c, v, d, curve }) = self.row(of, joint, kind) else { continue };
+                let (m, c, v, mut d) = (at(&m), at(&c), at(&v), at(&d));
+                let curve = curve.map(|curve| {
+                    let (curve, rest) = curve.over_square(at(&of.rate[joint]));
+                    d = d.plus(rest);
+                    curve
+                });
                 if kind == Kind::Speed && c.low > 0.0 {
                     top = top.min(d.negated().over(c).map_or(f64::INFINITY, |x| x.high));
                 } else if m.low > 0.0 || m.high < 0.0 {
                     // c x + v sqrt(x) + d <= -m u, by |m|.
                     let size = if m.low > 0.0 { m } else { m.negated() };
                     let by = |x: Range| x.over(size).unwrap_or(Range::ALL);
-                    rows.push((m.low > 0.0, [by(c), by(v), by(d)]));
+                    let curve = curve.map(|curve| curve.times(by(Range::of(1.0))));
+                    rows.push((m.low > 0.0, [by(c), by(v), by(d)], curve));
                 } else {
-                    flat.push((m.size(), [c, v, d]));
+                    flat.push((m.size(), [c, v, d], curve));
                 }
             }
         }
-        let lower = |sign: bool| rows.iter().filter(move |row| row.0 == sign).map(|row| &row.1);
+        let lower = |sign: bool| rows.iter().filter(move |row| row.0 == sign).map(|row| (&row.1, row.2));
         let mut sums = Vec::new();
-        for a in lower(true) {
-            for b in lower(false) {
-                sums.push(Sum([0, 1, 2].map(|k| Range::of(a[k].plus(b[k]).low))));
+        for (a, of_a) in lower(true) {
+            for (b, of_b) in lower(false) {
+                let terms = [0, 1, 2].map(|k| Range::of(a[k].plus(b[k]).low));
+                sums.push(Sum { terms, curves: of_a.into_iter().chain(of_b).collect(), other: None });
                 // A joint that turns round: |m| is at most `size`, and u lies between the two rows.
-                for (size, row) in &flat {
-                    let by = |other: &[Range; 3], k: usize| row[k].plus(other[k].times(Range::of(*size))).low;
-                    sums.push(Sum([0, 1, 2].map(|k| Range::of(by(a, k).min(by(b, k))))));
+                for (size, row, curve) in &flat {
+                    let size = Range::of(*size);
+                    let by = |other: &[Range; 3], k: usize| row[k].plus(other[k].times(size)).low;
+                    let sum = |terms: [f64; 3], of: Option<Curve>, other: Option<Box<Sum>>| {
+                        let curves = curve.iter().copied().chain(of.map(|of| of.times(size))).collect();
+                        Sum { terms: terms.map(Range::of), curves, other }
+                    };
+                    sums.push(if of_a.is_none() && of_b.is_none() {
+                        sum([0, 1, 2].map(|k| by(a, k).min(by(b, k))), None, None)
+                    } else {
+                        let other = Box::new(sum([0, 1, 2].map(|k| by(b, k)), of_b, None));
+                        sum([0, 1, 2].map(|k| by(a, k)), of_a, Some(other))
+                    });
                 }
             }
         }
@@ -723,7 +789,8 @@ mod tests {
         let (top, mut ends, mut forever) = (50.0, 0, 0);
         for _ in 0..5000 {
             let [c, v, d] = [0, 1, 2].map(|_| random(8.0) - 4.0);
-            let (sum, from) = (Sum([c, v, d].map(Range::of)), random(4.0));
+            let terms = [c, v, d].map(Range::of);
+            let (sum, from) = (Sum { terms, curves: Vec::new(), other: None }, random(4.0));
             let value = |x: f64| c * x + v * x.sqrt() + d;
             let Some(end) = sum.reach(from, top) else {
                 assert!(value(from) < 1e-3, "{c} {v} {d} from {from}");

@@ -30,7 +30,7 @@ use armgen_runtime::timing::{self, time_optimal, Ends, JointPath, Node, Piece, S
 use super::verify::with_spinner;
 use crate::output::write_other;
 use crate::{input, terminal, DONE, FAULTY, UNREADABLE};
-use arm::{Arm, Unfit};
+use arm::Arm;
 use faults::Faults;
 use file::File;
 use result::Motion;
@@ -115,17 +115,13 @@ fn refused(source: &Source, diagnostics: &Diagnostics) -> u8 {
     FAULTY
 }
 
-/// The exit code after the message why the arm of a description cannot be timed.
-fn unfit(description: &str, manipulator: &Manipulator, unfit: &Unfit) -> u8 {
-    terminal::error(&match unfit {
-        Unfit::Massless => format!("{description}: massless: nothing of this arm has mass, so it has no equations of motion"),
-        Unfit::Friction { joint, code, friction } => format!(
-            "{description}: {code}: joint `{}` has {friction} friction, which a timing does not treat; \
-             describe it by `viscous` and `coulomb` of at least that torque",
-            manipulator.joints[*joint].name
-        ),
-    });
-    FAULTY
+/// The arm of a description, or the exit code after the message why it cannot be timed.
+fn arm<const N: usize>(description: &str, manipulator: &Manipulator) -> Result<Arm<N>, u8> {
+    with_spinner("deriving", || Arm::new(manipulator)).ok_or_else(|| {
+        let reason = "massless: nothing of this arm has mass, so it has no equations of motion";
+        terminal::error(&format!("{description}: {reason}"));
+        FAULTY
+    })
 }
 
 /// A path of pieces.
@@ -142,8 +138,7 @@ struct Job<'a> {
 impl Job<'_> {
     /// The motion; `None` where the path has none, after a diagnostic. An exit code where the arm has none, after a message.
     fn run<const N: usize>(&self, diagnostics: &mut Diagnostics) -> Result<Option<Motion>, u8> {
-        let arm: Arm<N> = with_spinner("deriving", || Arm::new(self.manipulator))
-            .map_err(|of| unfit(self.description, self.manipulator, &of))?;
+        let arm: Arm<N> = arm(self.description, self.manipulator)?;
         let form = self.file.form.as_ref().expect("a file that is timed has a path");
         let (pieces, origins): (Vec<Piece<f64, N>>, Vec<curve::Origin>) = curve::pieces(form).into_iter().unzip();
         let faults = Faults { manipulator: self.manipulator, file: self.file, form, origins: &origins };

@@ -263,12 +263,6 @@ fn faults() -> Vec<(&'static str, String, String, Vec<&'static str>, Vec<&'stati
         ("other-robot", of(SLIDE, "robot: panda\npoints: [[0], [1]]\n"), "", vec!["`panda`", "path.yaml:1:8"]),
         // Of a description.
         (
-            "friction-not-treated",
-            of(&SLIDE.replace("coulomb: 2", "cubic: 2"), "points: [[0], [1]]\n"),
-            "",
-            vec!["joint `slide` has cubic or Stribeck friction"],
-        ),
-        (
             "smooth-friction",
             of(&SLIDE.replace("coulomb: 2", "coulomb: 2, smooth: 0.1"), "points: [[0], [1]]\n"),
             "",
@@ -301,7 +295,7 @@ fn every_fault_has_its_code_and_its_place() {
             assert!(error.contains(text), "{code} lacks `{text}`: {error}");
         }
         let count = error.lines().filter(|line| line.starts_with("error[") || line.starts_with("warning[")).count();
-        assert_eq!(count, usize::from(!["friction-not-treated", "smooth-friction"].contains(&code)), "{code}: {error}");
+        assert_eq!(count, usize::from(code != "smooth-friction"), "{code}: {error}");
     }
 }
 
@@ -351,9 +345,11 @@ fn refused(name: &str, robot: &str, timing: &Value) -> String {
     }
 }
 
-/// Friction, a torque that binds, and a motor that needs momentum.
+/// Friction of all kinds, a torque that binds, and a motor that needs momentum.
 fn arms() -> Vec<(&'static str, String, &'static str)> {
+    let curved = SLIDE.replace("coulomb: 2", "coulomb: 1, cubic: 0.4, stribeck: {torque: 2, velocity: 0.3}");
     vec![
+        ("curved", curved, "points: [[0], [2]]\n"),
         ("slide", SLIDE.to_owned(), "points: [[0], [2]]\n"),
         ("pendulum", PENDULUM.to_owned(), "points: [[0], [2]]\n"),
         ("momentum", PENDULUM.to_owned(), "points: [[0], [3]]\nlimits: {effort: [8]}\n"),
@@ -379,7 +375,11 @@ fn a_timing_is_proved_again() {
     verified("scara", &scara, SCARA_PATH);
     // Nodes at which no pair of rows excludes all larger speeds, but one pair after the other does.
     verified("crane", CRANE, "points: [[0, 0], [1, 1], [2, 0]]\nlimits: {acceleration: [8, 4]}\n");
-    let (name, robot, _) = &arms()[0];
+    // Joints that turn round, with friction that is no line of the rate.
+    let friction = "friction: {coulomb: 1, cubic: 0.5, stribeck: {torque: 4, velocity: 0.1}}, limits: {velocity: 2";
+    let curved = CRANE.replace("limits: {velocity: 2", friction).replace("effort: 100", "effort: 40");
+    verified("crane-curved", &curved, "points: [[0, 0], [1, 1], [2, 0]]\nlimits: {effort: {boom: 8}}\n");
+    let (name, robot, _) = &arms()[1];
     let mut cut = verified(name, robot, "points: [[0], [2]]\n");
     cut["grid"]["k"].as_array_mut().expect("a list").pop();
     assert!(refused(name, robot, &cut).contains("lengths of its lists"));
@@ -476,13 +476,20 @@ fn no_change_is_accepted_that_samples_refute() {
         (state >> 11) as f64 / (1u64 << 53) as f64
     };
     let slide = |_: f64, dq: f64, ddq: f64, direction: f64| 2.0 * ddq + 1.5 * dq + 2.0 * direction;
+    let curved = |_: f64, dq: f64, ddq: f64, direction: f64| {
+        2.0 * ddq + 1.5 * dq + 0.4 * dq.powi(3) + (1.0 + 2.0 * (-dq.abs() / 0.3).exp()) * direction
+    };
     let pendulum = |q: f64, _: f64, ddq: f64, _: f64| ddq + 9.81 * q.sin();
     let (mut accepted, mut changes) = (0, 0);
     for (name, robot, path) in arms() {
         let timing = verified(name, &robot, path);
         let given = armgen_codegen::source::Source::new("robot", &robot);
         let (manipulator, _) = armgen_codegen::validate::read(&given).0.expect("a valid arm");
-        let torque: &dyn Fn(f64, f64, f64, f64) -> f64 = if name == "slide" { &slide } else { &pendulum };
+        let torque: &dyn Fn(f64, f64, f64, f64) -> f64 = match name {
+            "curved" => &curved,
+            "slide" => &slide,
+            _ => &pendulum,
+        };
         assert!(largest_share(&timing, torque) <= 1.0 + 1e-9, "{name}");
         let mut all = Vec::new();
         places(&timing, "", &mut all);

@@ -2,6 +2,7 @@
 
 use super::inner::HalfPlanes;
 use super::law::Law;
+use super::model::JointFriction;
 use super::segment::{Assumed, Inner, Segment};
 use super::timed::Timing;
 use crate::linalg::lit;
@@ -74,7 +75,7 @@ struct Rows<T> {
 }
 
 /// From which to which share of the timed motion's x rows hold; the last share has no upper end. Narrow windows have tight chords of
-/// sqrt(x), wide ones connect them.
+/// friction, wide ones connect them.
 const WINDOWS: [[f64; 2]; 4] = [[0.0, 1.0], [0.0, 0.5], [0.3, 1.0], [0.8, 1.0]];
 /// Rows that are tried: those of the timed motion, and with three k of each window.
 const ROWS: usize = 1 + 3 * WINDOWS.len();
@@ -301,8 +302,8 @@ fn candidates<T: RealField + Copy, const N: usize>(
     let (zero, half) = (T::zero(), lit::<T>(0.5));
     let least = law.x0.min(law.middle()).min(law.x2).max(zero);
     let most = law.x0.max(law.middle()).max(law.x2);
-    // Without viscous friction nothing depends on the window.
-    let windows = if timing.friction.iter().any(|f| f.viscous != zero) { WINDOWS.len() } else { 1 };
+    // Without friction that is no line nothing depends on the window.
+    let windows = if timing.friction.iter().any(JointFriction::is_curved) { WINDOWS.len() } else { 1 };
     let mut rows = [None; ROWS];
     let (first, others) = rows.split_at_mut(1);
     first.fill(Some(Rows { k: law.k, assumed }));

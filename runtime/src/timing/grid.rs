@@ -150,7 +150,7 @@ fn roots<T: RealField + Copy, R: PathDynamics<N, Real = T>, const N: usize>(
     let mut roots = [[None; ORDER]; N];
     for (joint, (of, friction)) in roots.iter_mut().zip(robot.joint_friction()).enumerate() {
         let zero = T::zero();
-        if friction.viscous != zero || friction.coulomb != zero || friction.load != zero {
+        if friction.is_curved() || friction.coulomb != zero || friction.load != zero {
             *of = polynomial::roots(&polynomial::derivative(&piece.joint(joint)), piece.length)
                 .map(|root| root.map(|t| t / distance));
         }

@@ -3,12 +3,12 @@
 //! On a segment a row has five Bernstein coefficients, linear in X0 and X2 once k is chosen: half-planes. Backwards, the interval of the X0
 //! from which some X2 in the next interval keeps all of them; forwards, the largest X2. So x is found as by reachability analysis
 //! (Pham, Pham, *IEEE T-RO* 34, 2018), and every limit holds between nodes.
-//! The root of x in viscous friction is replaced, on the side that counts, by a tangent or a chord.
+//! Friction that is no line over x is replaced, on the side that counts, by a tangent or a chord.
 
 use super::limits::Limits;
 use super::model::JointFriction;
 use super::outer::ROUNDING;
-use super::row::{Form, Line, Row};
+use super::row::{Form, Row, Window};
 use super::segment::{Assumed, Segment};
 use crate::linalg::lit;
 use nalgebra::RealField;
@@ -43,7 +43,7 @@ impl<T: RealField + Copy, const N: usize> HalfPlanes<T, N> {
         let (zero, one, half) = (T::zero(), T::one(), lit::<T>(0.5));
         let h = segment.length;
         let [least, most] = assumed.x;
-        let (above, below) = (Line::tangent(assumed.touch.sqrt()), Line::chord(least, most));
+        let window = Window::new(assumed.x, assumed.touch);
         let mut rows = [[None; 5]; N];
         for index in 0..Segment::<T, N>::ROWS {
             let Some(row) = segment.row(index, limits, friction, false) else { continue };
@@ -55,9 +55,8 @@ impl<T: RealField + Copy, const N: usize> HalfPlanes<T, N> {
             }
             // x >= 0, so the error of c is a part of c.
             let mut row = Row { c: row.c.map(|c| c + row.c_error), ..row };
-            if row.is_viscous() {
-                let line = if row.v_sign() > zero { above } else { below };
-                row = row.with(&line);
+            if row.is_curved() {
+                row = row.straight(&window, true);
             }
             let bound = row.bound - slack;
             let planes =

@@ -14,7 +14,8 @@ pub struct PathTorques<T, const N: usize> {
     pub gravity: SVector<T, N>,
 }
 
-/// Friction of a joint, for q' of either sign: viscous dq + (coulomb + load |g|) sign(dq) + offset; N m or N.
+/// Friction of a joint, for q' of either sign: viscous dq + cubic dq³ + (coulomb + load |g| + stribeck exp(-|dq|/stribeck_velocity)) sign(dq)
+/// + offset; N m or N.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct JointFriction<T> {
     /// Viscous friction seen at the joint, the motor's included, k_r² F_m + F_v; N m s/rad or N s/m.
@@ -25,6 +26,24 @@ pub struct JointFriction<T> {
     pub offset: T,
     /// What grows with gravity's torque, without unit.
     pub load: T,
+    /// Cubic friction, N m s³/rad³ or N s³/m³.
+    pub cubic: T,
+    /// Stribeck friction at rest, N m or N.
+    pub stribeck: T,
+    /// The rate at which 1/e of it is left, rad/s or m/s; above 0 unless `stribeck` is 0.
+    pub stribeck_velocity: T,
+}
+
+impl<T: RealField + Copy> JointFriction<T> {
+    /// Whether it depends on the rate otherwise than by its sign.
+    pub(super) fn is_curved(&self) -> bool {
+        self.viscous != T::zero() || self.has_curve()
+    }
+
+    /// And otherwise than linearly.
+    pub(super) fn has_curve(&self) -> bool {
+        self.cubic != T::zero() || self.stribeck != T::zero()
+    }
 }
 
 /// Lengths and inertias of a joint and the link that it moves: no posture enters. They bound derivatives of torques along a path.

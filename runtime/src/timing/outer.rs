@@ -5,10 +5,11 @@
 //! (Walter, *Differential and Integral Inequalities*, 1970). The same with m < 0 from the right end. With m = 0, x <= X at every place.
 //! Nothing here assumes that an optimum has been found, is smooth or is unique.
 
+use super::curve::{Curve, Line};
 use super::law::Law;
 use super::limits::Limits;
 use super::model::JointFriction;
-use super::row::{Line, Row};
+use super::row::{Row, Window};
 use super::segment::{Barrier, Segment};
 use crate::linalg::lit;
 use nalgebra::RealField;
@@ -29,6 +30,7 @@ struct AtNode<T> {
     v: T,
     rest: T,
     m_error: T,
+    curve: Option<Curve<T>>,
 }
 
 /// What a node allows.
@@ -48,9 +50,9 @@ pub(super) fn node_bound<T: RealField + Copy, const N: usize>(
     friction: &[JointFriction<T>; N],
 ) -> NodeBound<T> {
     let mut x = huge::<T>();
-    let empty = AtNode { m: T::zero(), c: T::zero(), v: T::zero(), rest: huge(), m_error: T::zero() };
+    let empty = AtNode { m: T::zero(), c: T::zero(), v: T::zero(), rest: huge(), m_error: T::zero(), curve: None };
     let mut rows = [[[empty; 4]; N]; 2];
-    let mut viscous = false;
+    let mut curved = false;
     for (side, (segment, at_end)) in rows.iter_mut().zip([(left, true), (right, false)]) {
         let Some(segment) = segment else { continue };
         let here = |[start, _, end]: [T; 3]| if at_end { end } else { start };
@@ -70,8 +72,9 @@ pub(super) fn node_bound<T: RealField + Copy, const N: usize>(
                 v: here(row.v),
                 rest: row.bound + slack + row.d_error - here(row.d),
                 m_error: row.m_error,
+                curve: row.curve.map(|curve| curve.at(if at_end { 2 } else { 0 })),
             };
-            viscous |= at.v != T::zero();
+            curved |= row.is_curved();
             if let Some(of) = side.get_mut(index / 4) {
                 of[index % 4] = at;
             }
@@ -80,7 +83,7 @@ pub(super) fn node_bound<T: RealField + Copy, const N: usize>(
     // u may jump at a node, as q'' and the signs of friction do: each side has an interval of its own.
     for side in &mut rows {
         // A first solution tells how large u is, and so how much the errors of m count.
-        let (first, u) = largest(side, x, viscous);
+        let (first, u) = largest(side, x, curved);
         for row in side.iter_mut().flatten() {
             row.rest += row.m_error * u * lit(2.0);
         }
@@ -88,7 +91,7 @@ pub(super) fn node_bound<T: RealField + Copy, const N: usize>(
             NodeBound::AtMost(first) => x.min(first.max(T::zero()) * lit(1.0 + 1e-6)),
             NodeBound::Nothing(_) => x,
         };
-        match largest(side, from, viscous).0 {
+        match largest(side, from, curved).0 {
             NodeBound::AtMost(most) => x = most,
             nothing @ NodeBound::Nothing(_) => return nothing,
         }
@@ -97,12 +100,12 @@ pub(super) fn node_bound<T: RealField + Copy, const N: usize>(
 }
 
 /// Newton from the right on the width of the interval of u, and |u| there.
-fn largest<T: RealField + Copy, const N: usize>(side: &[[AtNode<T>; 4]; N], mut x: T, viscous: bool) -> (NodeBound<T>, T) {
-    // With viscous friction the width is bounded from above on [x (1 - share), x].
+fn largest<T: RealField + Copy, const N: usize>(side: &[[AtNode<T>; 4]; N], mut x: T, curved: bool) -> (NodeBound<T>, T) {
+    // With friction that is no line the width is bounded from above on [x (1 - share), x].
     let mut share = T::one();
     let mut size = T::zero();
     for _ in 0..200 {
-        let low = if viscous { x * (T::one() - share) } else { T::zero() };
+        let low = if curved { x * (T::one() - share) } else { T::zero() };
         let (above, below) = (Line::tangent(x.max(lit(1e-30)).sqrt()), Line::chord(low, x));
         let mut high: (T, T, usize) = (huge(), T::zero(), 0);
         let mut least: (T, T, usize) = (-huge::<T>(), T::zero(), 0);
@@ -112,7 +115,12 @@ fn largest<T: RealField + Copy, const N: usize>(side: &[[AtNode<T>; 4]; N], mut 
                 continue;
             }
             let line = if row.v > T::zero() { below } else { above };
-            let (c, rest) = (row.c + row.v * line.slope, row.rest - row.v * line.height);
+            let (mut c, mut rest) = (row.c + row.v * line.slope, row.rest - row.v * line.height);
+            if let Some(curve) = &row.curve {
+                let (line, rounding) = curve.line([low, x], x, false);
+                c += line.slope * curve.square[0];
+                rest -= line.height - rounding;
+            }
             if row.m == T::zero() {
                 // No u helps: c x <= rest.
                 if c * x > rest {
@@ -156,7 +164,7 @@ fn largest<T: RealField + Copy, const N: usize>(side: &[[AtNode<T>; 4]; N], mut 
             x = low;
             continue;
         }
-        if viscous {
+        if curved {
             share = share.min((T::one() - next / x) * lit(4.0));
         }
         x = next;
@@ -182,10 +190,9 @@ fn barrier<T: RealField + Copy>(row: &Row<T>, h: T, x0: T, estimate: T) -> Optio
         if !(most > T::zero()) {
             return None;
         }
-        let v = row.v_sign();
-        let line = if v > T::zero() { Line::chord(least, most) } else { Line::tangent(((least + most) * half).sqrt()) };
         let target = row.bound + slack + row.m_error * slope + row.c_error * most + row.v_error * most.sqrt() + row.d_error;
-        let forms = if row.is_viscous() { row.with(&line).forms(h) } else { row.forms(h) };
+        let straight = || row.straight(&Window::new([least, most], (least + most) * half), false);
+        let forms = if row.is_curved() { straight().forms(h) } else { row.forms(h) };
         let needs = forms.map(|form| target - form.rest - form.x0 * x0);
         let [first, last] = [forms[0], forms[4]];
         let determinant = first.x2 * last.k - first.k * last.x2;
@@ -205,12 +212,12 @@ fn barrier<T: RealField + Copy>(row: &Row<T>, h: T, x0: T, estimate: T) -> Optio
             return None;
         }
         if x2 < T::zero() {
-            // Not even rest at the right end: without viscous friction this is exact; with it, x is bounded by a chord from zero.
-            return (!row.is_viscous()).then_some(law);
+            // Not even rest at the right end: without such friction this is exact; with it, x is bounded by a chord from zero.
+            return (!row.is_curved()).then_some(law);
         }
-        let holds = |x: T| x <= most && (x >= least || !row.is_viscous());
+        let holds = |x: T| x <= most && (x >= least || !row.is_curved());
         let kept = [law.x0, law.middle(), law.x2].iter().all(|x| holds(*x) && x.abs() <= most);
-        if kept && law.acceleration().iter().all(|u| u.abs() <= slope) && (!row.is_viscous() || law.middle() >= T::zero()) {
+        if kept && law.acceleration().iter().all(|u| u.abs() <= slope) && (!row.is_curved() || law.middle() >= T::zero()) {
             return Some(law);
         }
         margin = (margin * lit(2.0)).min(half);
@@ -234,7 +241,7 @@ pub(super) fn least<T: RealField + Copy, const N: usize>(
     };
     // Rows in the order of what Euler and the trapezoidal rule say.
     let estimate = |row: &Row<T>| {
-        let u = |end: usize, x: T| (row.bound - row.d[end] - row.c[end] * x - row.v[end] * x.max(T::zero()).sqrt()) / row.m[end];
+        let u = |end: usize, x: T| (row.bound - row.d[end] - row.c[end] * x - row.curved(end, x)) / row.m[end];
         let first = u(0, x0);
         x0 + h * (first + u(2, x0 + first * h * lit(2.0)))
     };
@@ -312,7 +319,7 @@ mod tests {
     fn a_barrier_needs_an_inertial_term_of_one_sign() {
         let of = |m: [f64; 3], m_error: f64| {
             let (c, none) = ([1.0; 3], [0.0; 3]);
-            let row = Row { m, c, v: none, d: none, m_error, c_error: 0.0, v_error: 0.0, d_error: 0.0, bound: 1.0 };
+            let row = Row { m, c, v: none, d: none, m_error, c_error: 0.0, v_error: 0.0, d_error: 0.0, bound: 1.0, curve: None };
             barrier(&row, 0.1, 0.2, 0.3)
         };
         let law = of([0.2; 3], 0.0).expect("a barrier");

@@ -3,6 +3,7 @@
 //! With x of Bernstein coefficients X0, X1 = (X0 + X2)/2 + k, X2 and u of U0 = (X1 - X0)/h, U1 = (X2 - X1)/h, the five coefficients of
 //! m u + c x + d, m, c, d quadratics, are linear in X0, X2 and k. All five at most the bound prove the row on the whole segment.
 
+use super::curve::{Curve, Line};
 use crate::linalg::lit;
 use nalgebra::RealField;
 
@@ -30,31 +31,23 @@ pub(super) struct Row<T> {
     pub v_error: T,
     pub d_error: T,
     pub bound: T,
+    /// Friction that enters otherwise.
+    pub curve: Option<Curve<T>>,
 }
 
-/// A line over sqrt(x): slope x + height.
+/// Where x lies, with lines over its root: above it and below.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Line<T> {
-    pub slope: T,
-    pub height: T,
+pub(super) struct Window<T> {
+    x: [T; 2],
+    touch: T,
+    above: Line<T>,
+    below: Line<T>,
 }
 
-impl<T: RealField + Copy> Line<T> {
-    /// The tangent at w² from above, w > 0: sqrt(x) <= (x/w + w)/2 for all x >= 0.
-    pub(super) fn tangent(w: T) -> Self {
-        let half = lit::<T>(0.5);
-        Self { slope: half / w, height: half * w }
-    }
-
-    /// The chord on [a, b]: sqrt(x) >= (x + sqrt(a b))/(sqrt a + sqrt b) for x in [a, b].
-    pub(super) fn chord(a: T, b: T) -> Self {
-        let (a, b) = (a.max(T::zero()).sqrt(), b.max(T::zero()).sqrt());
-        let sum = a + b;
-        if sum > T::zero() {
-            Self { slope: T::one() / sum, height: a * b / sum }
-        } else {
-            Self { slope: T::zero(), height: T::zero() }
-        }
+impl<T: RealField + Copy> Window<T> {
+    /// x from least to most; tangents touch at `touch` > 0.
+    pub(super) fn new(x: [T; 2], touch: T) -> Self {
+        Self { x, touch, above: Line::tangent(touch.sqrt()), below: Line::chord(x[0], x[1]) }
     }
 }
 
@@ -65,25 +58,46 @@ impl<T: RealField + Copy> Row<T> {
         v0 + v1 + v1 + v2
     }
 
-    /// Whether viscous friction enters.
-    pub(super) fn is_viscous(&self) -> bool {
-        self.v.iter().any(|v| *v != T::zero())
+    /// Whether friction enters that is no line over x.
+    pub(super) fn is_curved(&self) -> bool {
+        self.curve.is_some() || self.v.iter().any(|v| *v != T::zero())
     }
 
-    /// The row with v sqrt(x) replaced by a line over it.
-    pub(super) fn with(&self, line: &Line<T>) -> Row<T> {
+    /// The row with such friction replaced by lines that bound the row, for x >= 0 in a window: from above, or from below.
+    pub(super) fn straight(&self, window: &Window<T>, above: bool) -> Row<T> {
         let mut row = *self;
+        let line = if (self.v_sign() > T::zero()) == above { window.above } else { window.below };
         for i in 0..3 {
             row.c[i] += self.v[i] * line.slope;
             row.d[i] += self.v[i] * line.height;
         }
+        if let Some(curve) = &self.curve {
+            let (line, rounding) = curve.line(window.x, window.touch, above);
+            let side = if above { T::one() } else { -T::one() };
+            let error = line.slope.abs() * curve.error * side;
+            for i in 0..3 {
+                row.c[i] += line.slope * curve.square[i] + error;
+                row.d[i] += line.height + rounding * side;
+            }
+        }
         row
+    }
+
+    /// What friction adds at an end of the segment that is no line over x.
+    pub(super) fn curved(&self, end: usize, x: T) -> T {
+        let at = |[start, _, last]: Quadratic<T>| if end == 0 { start } else { last };
+        let value = at(self.v) * x.max(T::zero()).sqrt();
+        self.curve.as_ref().map_or(value, |curve| value + curve.value(at(curve.square), x))
     }
 
     /// The row seen from the other end: u changes its sign.
     pub(super) fn reversed(&self) -> Row<T> {
         let turned = |[a, b, c]: Quadratic<T>| [c, b, a];
-        Row { m: turned(self.m).map(|m| -m), c: turned(self.c), v: turned(self.v), d: turned(self.d), ..*self }
+        let mut curve = self.curve;
+        if let Some(curve) = &mut curve {
+            curve.square = turned(curve.square);
+        }
+        Row { m: turned(self.m).map(|m| -m), c: turned(self.c), v: turned(self.v), d: turned(self.d), curve, ..*self }
     }
 
     /// The Bernstein coefficients of m u + c x + d.
@@ -156,6 +170,7 @@ mod tests {
                 v_error: 0.0,
                 d_error: 0.0,
                 bound: 0.0,
+                curve: None,
             };
             for (i, form) in row.forms(h as f64).iter().enumerate() {
                 let weight = [1, 4, 6, 4, 1][i];

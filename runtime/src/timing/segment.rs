@@ -10,6 +10,7 @@
 //! where p''' is bounded by its Bernstein coefficients and M_9 by majorants (`majorant.rs`). Halves of a segment use the same p, so they
 //! need no dynamics, and the first term falls by eight.
 
+use super::curve::Curve;
 use super::law::Law;
 use super::limits::Limits;
 use super::majorant::{Bounds, NINE};
@@ -167,7 +168,7 @@ impl<T: RealField + Copy, const N: usize> Segment<T, N> {
         let joints = gravity.into_iter().zip(friction).zip(limits.effort).enumerate();
         let mut sides = joints.flat_map(|(joint, ((gravity, of), [low, high]))| {
             let torque = gravity + of.offset;
-            let dry = of.coulomb + of.load * gravity.abs();
+            let dry = of.coulomb + of.stribeck + of.load * gravity.abs();
             [(joint, torque, high + dry), (joint, -torque, -low + dry)]
         });
         sides.find(|(_, torque, limit)| torque > limit)
@@ -209,6 +210,7 @@ impl<T: RealField + Copy, const N: usize> Segment<T, N> {
                 v_error: T::zero(),
                 d_error: T::zero(),
                 bound: limit * limit,
+                curve: None,
             });
         }
         let side = if index.is_multiple_of(2) { T::one() } else { -T::one() };
@@ -226,6 +228,7 @@ impl<T: RealField + Copy, const N: usize> Segment<T, N> {
                 v_error: T::zero(),
                 d_error: T::zero(),
                 bound: limit,
+                curve: None,
             });
         }
         let [low, high] = *limits.effort.get(joint)?;
@@ -237,6 +240,13 @@ impl<T: RealField + Copy, const N: usize> Segment<T, N> {
         let rate = self.rates[0].get(joint)?;
         let of = friction.get(joint)?;
         let sign = *self.signs.get(joint)?;
+        let curve = (of.has_curve() && sign != T::zero()).then(|| Curve {
+            cubic: of.cubic * side * sign,
+            stribeck: of.stribeck * side * sign,
+            velocity: of.stribeck_velocity,
+            square: self.rates[2].get(joint).map_or(zero, |square| square.quadratic),
+            error: self.rates[2].get(joint).map_or(T::zero(), |square| square.error),
+        });
         let mut d = signed(g.quadratic).map(|g| g + side * (sign * of.coulomb + of.offset));
         let mut d_error = g.error;
         if of.load > T::zero() && sign != T::zero() {
@@ -268,6 +278,7 @@ impl<T: RealField + Copy, const N: usize> Segment<T, N> {
             v_error: of.viscous * rate.error,
             d_error,
             bound,
+            curve,
         })
     }
 }

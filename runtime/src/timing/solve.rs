@@ -48,7 +48,8 @@ struct Solver<'a, T, const N: usize> {
     limits: &'a Limits<T, N>,
     friction: &'a [JointFriction<T>; N],
     ends: &'a Ends<T>,
-    viscous: bool,
+    /// Whether friction is no line over x.
+    curved: bool,
 }
 
 /// What one pass of the inner solution assumes of x.
@@ -73,7 +74,7 @@ struct Stuck {
 
 /// The fastest motion on a path within limits, with a proof that no motion is faster by more than the gap.
 ///
-/// x = ds² is the pointwise largest profile, so viscous friction is no obstacle: of two profiles that keep the limits, the larger one at
+/// x = ds² is the pointwise largest profile, so friction is no obstacle: of two profiles that keep the limits, the larger one at
 /// each place keeps them, too. Every limit holds on all of every segment. Refinement stops at gap <= `goal`, or when `work` is full.
 ///
 /// # Errors
@@ -107,8 +108,8 @@ pub fn time_optimal<'w, T: RealField + Copy, R: PathDynamics<N, Real = T>, S: As
     let interpolation = Interpolation::new();
     let Workspace { nodes, segments } = work;
     let (layout, mut count) = grid::build(robot, pieces, nodes, segments, &interpolation)?;
-    let viscous = friction.iter().any(|f| f.viscous != zero);
-    let solver = Solver { limits, friction, ends: &ends, viscous };
+    let curved = friction.iter().any(JointFriction::is_curved);
+    let solver = Solver { limits, friction, ends: &ends, curved };
     solver.check_end(segments, count)?;
     let mut solved = false;
     let mut best = Totals { duration: zero, lower: zero };
@@ -260,7 +261,7 @@ impl<T: RealField + Copy, const N: usize> Solver<'_, T, N> {
         let mut worst = (T::zero(), 0);
         for index in 0..Segment::<T, N>::ROWS {
             let Some(row) = segment.row(index, self.limits, self.friction, false) else { continue };
-            let share = (row.c[end] * x + row.v[end] * x.sqrt() + row.d[end]) / row.bound;
+            let share = (row.c[end] * x + row.curved(end, x) + row.d[end]) / row.bound;
             if share > worst.0 {
                 worst = (share, index);
             }
@@ -270,7 +271,7 @@ impl<T: RealField + Copy, const N: usize> Solver<'_, T, N> {
 
     /// A motion that keeps all rows. `known`: the laws of the segments are those of a coarser grid.
     fn inner(&self, segments: &mut [Segment<T, N>], known: bool) -> Result<(), Stuck> {
-        if !self.viscous {
+        if !self.curved {
             return self.pass(segments, Assume::Bound);
         }
         if !(known && self.pass(segments, Assume::Share(lit(0.97))).is_ok()) {

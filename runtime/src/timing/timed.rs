@@ -262,7 +262,8 @@ impl<'a, T: RealField + Copy, const N: usize> Timing<'a, T, N> {
         let value = |[a, b, c]: [T; 3]| a * r * r + b * lit::<T>(2.0) * r * t + c * t * t;
         for index in 0..Segment::<T, N>::ROWS {
             let Some(row) = segment.row(index, &self.limits, &self.friction, false) else { continue };
-            let share = (value(row.m) * u + value(row.c) * x + value(row.v) * x.sqrt() + value(row.d)) / row.bound;
+            let curve = row.curve.as_ref().map_or(T::zero(), |curve| curve.value(value(curve.square), x));
+            let share = (value(row.m) * u + value(row.c) * x + value(row.v) * x.sqrt() + curve + value(row.d)) / row.bound;
             take(index, if index >= Segment::<T, N>::SLOPED { share.max(T::zero()).sqrt() } else { share });
         }
     }

@@ -36,7 +36,7 @@ struct Joint {
 pub struct Chain<const N: usize> {
     joints: [Joint; N],
     gravity: Vector3<f64>,
-    friction: [JointFriction<f64>; N],
+    pub friction: [JointFriction<f64>; N],
     links: [LinkBound<f64>; N],
 }
 
@@ -89,6 +89,15 @@ impl<const N: usize> Chain<N> {
 
     pub fn without_friction(mut self) -> Self {
         self.friction = [JointFriction::default(); N];
+        self
+    }
+
+    /// The same arm with cubic and Stribeck friction: a share of the joint's limit of torque each, at its limit of speed and at rest.
+    pub fn with_curved_friction(mut self, (velocity, effort): ([f64; N], [f64; N]), cubic: f64, stribeck: f64) -> Self {
+        for (joint, of) in self.friction.iter_mut().enumerate() {
+            of.cubic = cubic * effort[joint] / velocity[joint].powi(3);
+            (of.stribeck, of.stribeck_velocity) = (stribeck * effort[joint], 0.04 * velocity[joint]);
+        }
         self
     }
 
@@ -157,7 +166,9 @@ impl<const N: usize> Chain<N> {
             } else {
                 0.0
             };
-            tau[i] += f.viscous * dq[i] + sign * (f.coulomb + f.load * gravity[i].abs()) + f.offset;
+            let stribeck = if f.stribeck > 0.0 { f.stribeck * (-dq[i].abs() / f.stribeck_velocity).exp() } else { 0.0 };
+            tau[i] += f.viscous * dq[i] + f.cubic * dq[i].powi(3);
+            tau[i] += sign * (f.coulomb + f.load * gravity[i].abs() + stribeck) + f.offset;
         }
         tau
     }
@@ -200,7 +211,7 @@ const fn row(
     viscous: f64,
     coulomb: f64,
 ) -> Row {
-    let friction = JointFriction { viscous, coulomb, offset: 0.0, load: 0.0 };
+    let friction = JointFriction { viscous, coulomb, offset: 0.0, load: 0.0, cubic: 0.0, stribeck: 0.0, stribeck_velocity: 0.0 };
     Row { slides: false, a, alpha, d, theta, mass, com, inertia, rotor: [0.0, 0.0], friction }
 }
 
@@ -360,6 +371,7 @@ pub fn random<const N: usize>(random: &mut impl FnMut() -> f64) -> Chain<N> {
                 coulomb: between(0.0, 3.0),
                 offset: between(-0.5, 0.5),
                 load: between(0.0, 0.1),
+                ..JointFriction::default()
             },
         }
     });

@@ -1,5 +1,6 @@
 //! Inequalities on t from -1 to 1, proved by Bernstein coefficients on halves.
 
+use super::curve::Curve;
 use super::taylor::{Range, Taylor, TERMS};
 use crate::element::Element;
 
@@ -53,17 +54,24 @@ struct Part {
     smooth: [Range; TERMS],
     /// v x and v.
     rooted: Option<[[Range; TERMS]; 2]>,
+    /// dq².
+    y: Option<[Range; TERMS]>,
     x: [Range; 3],
     from: f64,
     width: f64,
     depth: u32,
 }
 
-/// f + v sqrt(x) <= 0 for t from -1 to 1, where v and x are given; `square` is x again.
+/// f + v sqrt(x) + a curve of y <= 0 for t from -1 to 1, where v and x, the curve and y are given; `square` is x again.
 ///
 /// # Errors
 /// A t: within 2^-20 of it this is not proved.
-pub(super) fn at_most_zero(f: &Taylor, rooted: Option<(&Taylor, &Taylor)>, square: &Square) -> Result<(), f64> {
+pub(super) fn at_most_zero(
+    f: &Taylor,
+    rooted: Option<(&Taylor, &Taylor)>,
+    curved: Option<&(Curve, Taylor)>,
+    square: &Square,
+) -> Result<(), f64> {
     let rooted = rooted.filter(|(v, _)| !v.is_zero());
     let products = rooted.map(|(v, x)| (v.times(x), v));
     // What the polynomials miss: sqrt(x) is at most that of the largest coefficient.
@@ -72,13 +80,16 @@ pub(super) fn at_most_zero(f: &Taylor, rooted: Option<(&Taylor, &Taylor)>, squar
     let mut parts = vec![Part {
         smooth: coefficients(f),
         rooted: products.as_ref().map(|(product, v)| [coefficients(product), coefficients(v)]),
+        y: curved.map(|(_, y)| coefficients(y)),
         x: square.0,
         from: -1.0,
         width: 2.0,
         depth: 0,
     }];
     while let Some(part) = parts.pop() {
-        let bound = part.bound(f.rest, products.as_ref().map(|(product, v)| [product.rest, v.rest]), line);
+        let straight = curved.map_or(Some((part.smooth, f.rest)), |of| part.straight(f.rest, of));
+        let rests = products.as_ref().map(|(product, v)| [product.rest, v.rest]);
+        let bound = straight.and_then(|(smooth, rest)| part.bound(&smooth, rest, rests, line));
         if bound.is_some_and(|bound| bound <= 0.0) {
             continue;
         }
@@ -87,11 +98,13 @@ pub(super) fn at_most_zero(f: &Taylor, rooted: Option<(&Taylor, &Taylor)>, squar
         }
         let (smooth, x) = (halves(&part.smooth), halves(&part.x));
         let rooted = part.rooted.map(|[product, v]| [halves(&product), halves(&v)]);
+        let y = part.y.map(|y| halves(&y));
         for half in [1, 0] {
             let width = 0.5 * part.width;
             parts.push(Part {
                 smooth: smooth[half],
                 rooted: rooted.map(|[product, v]| [product[half], v[half]]),
+                y: y.map(|y| y[half]),
                 x: x[half],
                 from: part.from + width * half as f64,
                 width,
@@ -103,11 +116,21 @@ pub(super) fn at_most_zero(f: &Taylor, rooted: Option<(&Taylor, &Taylor)>, squar
 }
 
 impl Part {
+    /// The polynomial and its rest with a line in place of a curve.
+    fn straight(&self, rest: Range, (curve, model): &(Curve, Taylor)) -> Option<([Range; TERMS], Range)> {
+        let y = self.y?;
+        let low = (y.iter().fold(f64::INFINITY, |least, y| least.min(y.low)) + model.rest.low).next_down().max(0.0);
+        let high = (y.iter().fold(f64::NEG_INFINITY, |most, y| most.max(y.high)) + model.rest.high).next_up().max(low);
+        let [slope, height] = curve.line(low, high, 0.5 * (low + high))?;
+        let smooth = std::array::from_fn(|k| self.smooth[k].plus(slope.times(y[k])).plus(height));
+        Some((smooth, rest.plus(slope.times(model.rest))))
+    }
+
     /// An upper bound on this part.
-    fn bound(&self, rest: Range, rests: Option<[Range; 2]>, all: Range) -> Option<f64> {
+    fn bound(&self, smooth: &[Range; TERMS], rest: Range, rests: Option<[Range; 2]>, all: Range) -> Option<f64> {
         let most = |of: &[Range; TERMS]| of.iter().fold(f64::NEG_INFINITY, |most, x| most.max(x.high));
         let (Some([product, v]), Some([product_rest, v_rest])) = (&self.rooted, rests) else {
-            return Some(Range::of(most(&self.smooth)).plus(rest).high);
+            return Some(Range::of(most(smooth)).plus(rest).high);
         };
         let clamp = |x: f64| x.max(0.0);
         let low = self.x.iter().fold(f64::INFINITY, |least, x| least.min(clamp(x.low)));
@@ -116,7 +139,7 @@ impl Part {
         let v_low = v.iter().fold(f64::INFINITY, |least, x| least.min(x.low)) + v_rest.low;
         let v_high = v.iter().fold(f64::NEG_INFINITY, |most, x| most.max(x.high)) + v_rest.high;
         if b.high == 0.0 {
-            return Some(Range::of(most(&self.smooth)).plus(rest).high);
+            return Some(Range::of(most(smooth)).plus(rest).high);
         }
         // v sqrt(x) by a line: a chord from below where v <= 0, a tangent from above where v >= 0, and its gap where v has both signs.
         let (slope, height, gap) = if v_high <= 0.0 {
@@ -131,7 +154,7 @@ impl Part {
         };
         let mut bound = f64::NEG_INFINITY;
         for k in 0..TERMS {
-            bound = bound.max(self.smooth[k].plus(slope.times(product[k])).plus(height.times(v[k])).high);
+            bound = bound.max(smooth[k].plus(slope.times(product[k])).plus(height.times(v[k])).high);
         }
         let missed = rest.plus(slope.times(product_rest)).plus(height.times(v_rest));
         let spread = Range::of(gap).times(Range::of((-v_low).max(0.0)));
@@ -143,13 +166,21 @@ impl Taylor {
     /// Dry friction of this size against `rate`. Within rounding of a root of the rate the joint rests, and the middle of the segment
     /// decides; where the rate has both signs, the friction may be anything up to this size.
     pub(super) fn directed(&self, rate: &Taylor) -> Taylor {
-        let sign = Taylor::constant(Range::of(rate.terms[0].sign()));
-        let against = rate.times(&sign).negated().minus(&Taylor::constant(Range::of(1e-9 * rate.range().size())));
-        if self.is_zero() || at_most_zero(&against, None, &Square([Range::ZERO; 3])).is_ok() {
-            self.times(&sign)
-        } else {
-            Taylor { rest: Range::both(self.range().size()), ..Taylor::constant(Range::ZERO) }
+        if self.is_zero() {
+            return self.clone();
         }
+        match rate.direction() {
+            Some(sign) => self.times(&Taylor::constant(sign)),
+            None => Taylor { rest: Range::both(self.range().size()), ..Taylor::constant(Range::ZERO) },
+        }
+    }
+
+    /// The sign of a rate on all of the segment, but for rounding.
+    pub(super) fn direction(&self) -> Option<Range> {
+        let sign = Range::of(self.terms[0].sign());
+        let slack = Taylor::constant(Range::of(1e-9 * self.range().size()));
+        let against = self.times(&Taylor::constant(sign)).negated().minus(&slack);
+        at_most_zero(&against, None, None, &Square([Range::ZERO; 3])).is_ok().then_some(sign)
     }
 }
 
@@ -170,11 +201,11 @@ mod tests {
     #[test]
     fn polynomials_are_judged_between_their_coefficients() {
         // (t - 0.3)² - 1e-4 is below zero only near 0.3; its largest value on the ends is 1.69.
-        assert!(at_most_zero(&polynomial(&[0.09 - 1.7, -0.6, 1.0]), None, &NONE).is_ok());
-        assert!(at_most_zero(&polynomial(&[0.09 - 1.68, -0.6, 1.0]), None, &NONE).is_err_and(|t| (t + 1.0).abs() < 1e-3));
+        assert!(at_most_zero(&polynomial(&[0.09 - 1.7, -0.6, 1.0]), None, None, &NONE).is_ok());
+        assert!(at_most_zero(&polynomial(&[0.09 - 1.68, -0.6, 1.0]), None, None, &NONE).is_err_and(|t| (t + 1.0).abs() < 1e-3));
         // -(t - 0.3)² touches zero: not proved at the place, but with 1e-9 to spare it is.
-        assert!(at_most_zero(&polynomial(&[-0.09, 0.6, -1.0]), None, &NONE).is_err_and(|t| (t - 0.3).abs() < 1e-3));
-        assert!(at_most_zero(&polynomial(&[-0.09 - 1e-9, 0.6, -1.0]), None, &NONE).is_ok());
+        assert!(at_most_zero(&polynomial(&[-0.09, 0.6, -1.0]), None, None, &NONE).is_err_and(|t| (t - 0.3).abs() < 1e-3));
+        assert!(at_most_zero(&polynomial(&[-0.09 - 1e-9, 0.6, -1.0]), None, None, &NONE).is_ok());
     }
 
     #[test]
@@ -183,13 +214,13 @@ mod tests {
         let x = polynomial(&[2.0, 2.0]);
         let square = |a: f64, b: f64| Square([Range::of(a), Range::of(0.5 * (a + b)), Range::of(b)]);
         let v = |v: f64| polynomial(&[v]);
-        assert!(at_most_zero(&polynomial(&[-2.0 - 1e-9]), Some((&v(1.0), &x)), &square(0.0, 4.0)).is_ok());
-        assert!(at_most_zero(&polynomial(&[-1.999]), Some((&v(1.0), &x)), &square(0.0, 4.0)).is_err_and(|t| t > 0.99));
-        assert!(at_most_zero(&polynomial(&[1.0]), Some((&v(-1.0), &x)), &square(0.0, 4.0)).is_err());
+        assert!(at_most_zero(&polynomial(&[-2.0 - 1e-9]), Some((&v(1.0), &x)), None, &square(0.0, 4.0)).is_ok());
+        assert!(at_most_zero(&polynomial(&[-1.999]), Some((&v(1.0), &x)), None, &square(0.0, 4.0)).is_err_and(|t| t > 0.99));
+        assert!(at_most_zero(&polynomial(&[1.0]), Some((&v(-1.0), &x)), None, &square(0.0, 4.0)).is_err());
         let x = polynomial(&[2.5, 1.5]);
-        assert!(at_most_zero(&polynomial(&[1.0 - 1e-9]), Some((&v(-1.0), &x)), &square(1.0, 4.0)).is_ok());
+        assert!(at_most_zero(&polynomial(&[1.0 - 1e-9]), Some((&v(-1.0), &x)), None, &square(1.0, 4.0)).is_ok());
         // t sqrt(x) at t = 1 is 2, at t = -1 it is -1.
-        assert!(at_most_zero(&polynomial(&[-2.0 - 1e-6]), Some((&polynomial(&[0.0, 1.0]), &x)), &square(1.0, 4.0)).is_ok());
-        assert!(at_most_zero(&polynomial(&[-1.9]), Some((&polynomial(&[0.0, 1.0]), &x)), &square(1.0, 4.0)).is_err());
+        assert!(at_most_zero(&polynomial(&[-2.0 - 1e-6]), Some((&polynomial(&[0.0, 1.0]), &x)), None, &square(1.0, 4.0)).is_ok());
+        assert!(at_most_zero(&polynomial(&[-1.9]), Some((&polynomial(&[0.0, 1.0]), &x)), None, &square(1.0, 4.0)).is_err());
     }
 }

@@ -24,25 +24,14 @@ pub(super) struct Arm<const N: usize> {
     gravity: f64,
 }
 
-/// Why an arm cannot be timed.
-pub(super) enum Unfit {
-    /// It has no equations of motion.
-    Massless,
-    /// The friction of this joint, counted from 0, is of a kind that is not treated: its code and its name.
-    Friction { joint: usize, code: &'static str, friction: &'static str },
-}
-
 impl<const N: usize> Arm<N> {
-    /// The arm of a description of at most N joints.
-    pub(super) fn new(manipulator: &Manipulator) -> Result<Arm<N>, Unfit> {
+    /// The arm of a description of at most N joints without smooth friction; `None` where it has no equations of motion.
+    pub(super) fn new(manipulator: &Manipulator) -> Option<Arm<N>> {
         if manipulator.is_massless() {
-            return Err(Unfit::Massless);
+            return None;
         }
         let value = |p: &Polynomial| p.evaluate(&|ParameterId(i)| manipulator.parameters[i as usize].nominal.clone()).to_f64();
         let given = |p: &Option<Polynomial>| p.as_ref().map_or(0.0, value);
-        if let Some((joint, code, friction)) = manipulator.curved_friction() {
-            return Err(Unfit::Friction { joint, code, friction });
-        }
         let friction = std::array::from_fn(|i| {
             let Some(joint) = manipulator.joints.get(i) else { return JointFriction::default() };
             let motor = joint.motor.as_ref().map_or(0.0, |motor| value(&motor.ratio).powi(2) * given(&motor.viscous));
@@ -51,6 +40,9 @@ impl<const N: usize> Arm<N> {
                 coulomb: given(&joint.coulomb),
                 offset: given(&joint.offset),
                 load: joint.load.as_ref().map_or(0.0, |load| load.to_f64()),
+                cubic: given(&joint.cubic),
+                stribeck: joint.stribeck.as_ref().map_or(0.0, |stribeck| value(&stribeck.torque)),
+                stribeck_velocity: joint.stribeck.as_ref().map_or(0.0, |stribeck| stribeck.velocity.to_f64()),
             }
         });
         // Friction depends on the sign of the rates, which is known on every part of a path: it is added there.
@@ -69,7 +61,7 @@ impl<const N: usize> Arm<N> {
         let workspace = RefCell::new(inverse_dynamics.workspace());
         let gravity = Vector3::from(std::array::from_fn(|i| value(&manipulator.gravity[i]))).norm() * UPWARDS;
         let links = links(manipulator, &value);
-        Ok(Arm { dof: manipulator.dof(), inverse_dynamics, workspace, friction, links, gravity })
+        Some(Arm { dof: manipulator.dof(), inverse_dynamics, workspace, friction, links, gravity })
     }
 
     /// tau with friction of joints that move, or begin to move, in the directions of `forwards`.
@@ -84,6 +76,10 @@ impl<const N: usize> Arm<N> {
         for (i, of) in self.friction.iter().enumerate() {
             let sign = if forwards[i] == 0.0 { 0.0 } else { forwards[i].signum() };
             tau[i] += of.viscous * dq[i] + sign * (of.coulomb + of.load * gravity[i].abs()) + of.offset;
+            tau[i] += of.cubic * dq[i] * dq[i] * dq[i];
+            if of.stribeck != 0.0 {
+                tau[i] += sign * of.stribeck * (-dq[i].abs() / of.stribeck_velocity).exp();
+            }
         }
         tau
     }
@@ -92,7 +88,7 @@ impl<const N: usize> Arm<N> {
     pub(super) fn holding(&self, q: &SVector<f64, N>, joint: usize) -> (f64, f64) {
         let gravity = self.gravity_torque(q)[joint];
         let of = &self.friction[joint];
-        (gravity + of.offset, of.coulomb + of.load * gravity.abs())
+        (gravity + of.offset, of.coulomb + of.stribeck + of.load * gravity.abs())
     }
 
     fn gravity_torque(&self, q: &SVector<f64, N>) -> SVector<f64, N> {

@@ -16,7 +16,7 @@ use nalgebra::SVector;
 use super::arm::Arm;
 use super::file::{self, Limits};
 use super::result::{four, short};
-use super::{unfit, USUAL};
+use super::USUAL;
 use crate::commands::verify::with_spinner;
 use crate::{input, terminal, DONE, FAULTY};
 
@@ -316,8 +316,7 @@ fn judged<const N: usize>(
         }
     }
     if limits.effort.iter().flatten().any(|limit| limit.is_finite()) {
-        let arm: Arm<N> =
-            with_spinner("deriving", || Arm::new(manipulator)).map_err(|reason| unfit(description, manipulator, &reason))?;
+        let arm: Arm<N> = super::arm(description, manipulator)?;
         with_spinner("checking torques", || {
             for piece in &pieces {
                 let mut judge = |t: f64, directions: &dyn Fn(&SVector<f64, N>) -> SVector<f64, N>| {

@@ -14,7 +14,15 @@ use core::{hint::black_box, time::Duration};
 /// Times a path of two pieces and asks for everything that is known of the motion.
 #[inline(never)]
 pub(crate) fn every_timing<R: Dynamics<N>, const N: usize>(robot: &R) {
-    let friction = JointFriction { viscous: number(), coulomb: number(), offset: number(), load: number() };
+    let friction = JointFriction {
+        viscous: number(),
+        coulomb: number(),
+        offset: number(),
+        load: number(),
+        cubic: number(),
+        stribeck: number(),
+        stribeck_velocity: number(),
+    };
     let link = LinkBound {
         parent: black_box(None),
         slides: black_box(false),
