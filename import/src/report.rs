@@ -2,9 +2,11 @@
 
 use std::collections::BTreeMap;
 
+use armgen_codegen::kinds::MAX_JOINTS;
 use armgen_codegen::source::{Source, Span};
 use serde_json::{json, Map, Value};
 
+use crate::body::Body;
 use crate::bound::Bound;
 use crate::chain::{Arm, Attached, End, Follows, Row};
 use crate::format::Format;
@@ -19,6 +21,7 @@ pub struct Report {
     attached: usize,
     near: usize,
     moved: f64,
+    idle: Vec<String>,
 }
 
 /// The most names of a list on a terminal: a humanoid has a hundred joints besides an arm.
@@ -57,6 +60,11 @@ impl Report {
     /// By how much the origin of the end effector moves at most for what was taken for what it means, m.
     pub fn moved(&self) -> f64 {
         self.moved
+    }
+
+    /// Joints with coordinates that move no mass and no inertia, by their names in the description: with them B(q) is singular.
+    pub fn idle(&self) -> &[String] {
+        &self.idle
     }
 
     /// How many bodies are fixed to the links, which reading the description multiplies out.
@@ -133,7 +141,40 @@ pub(crate) fn of(source: &Source, format: &dyn Format, arm: &Arm, bound: Bound) 
     }
     let words = |most| words(source, arm, bound, &left_out, most);
     let attached = arm.rows.iter().map(|row| row.attached.len()).sum();
-    Report { lines: words(usize::MAX), short: words(NAMED), json, attached, near: arm.snap.near.len(), moved: bound.flange }
+    Report {
+        lines: words(usize::MAX),
+        short: words(NAMED),
+        json,
+        attached,
+        near: arm.snap.near.len(),
+        moved: bound.flange,
+        idle: idle(arm),
+    }
+}
+
+/// The joints with coordinates that move nothing with mass or inertia. An arm without any is one of kinematics alone.
+fn idle(arm: &Arm) -> Vec<String> {
+    let is_felt = |body: &Body| !body.mass.is_zero() || body.inertia.iter().any(|element| !element.is_zero());
+    let has_bodies = |row: &Row| row.body.iter().chain(row.attached.iter().map(|other| &other.body)).any(is_felt);
+    let leads = |i: usize, led: usize| chain(led, |k| Some(arm.rows[k].follows.as_ref()?.leader)).any(|row| row == i);
+    let moves = |i: usize| {
+        let driven: Vec<usize> = (0..arm.rows.len()).filter(|&led| leads(i, led)).collect();
+        let mut carried =
+            arm.rows.iter().enumerate().filter(|(k, _)| chain(*k, |k| arm.rows[k].parent).any(|row| driven.contains(&row)));
+        driven.iter().any(|&row| arm.rows[row].motion.armature.is_some()) || carried.any(|(_, row)| has_bodies(row))
+    };
+    let own = (0..arm.rows.len()).filter(|&i| arm.rows[i].follows.is_none());
+    let idle: Vec<String> = own.filter(|&i| !moves(i)).map(|i| arm.rows[i].name.clone()).collect();
+    if arm.rows.iter().any(has_bodies) {
+        idle
+    } else {
+        Vec::new()
+    }
+}
+
+/// A row and those that `next` leads to; no more than an arm has, should the file lead in a ring.
+fn chain(row: usize, next: impl Fn(usize) -> Option<usize>) -> impl Iterator<Item = usize> {
+    std::iter::successors(Some(row), move |&row| next(row)).take(MAX_JOINTS)
 }
 
 fn words(source: &Source, arm: &Arm, bound: Bound, left_out: &BTreeMap<String, usize>, most: usize) -> Vec<String> {

@@ -159,6 +159,48 @@ fn where_branches_are_too_many_followers_have_no_end_effector() {
     assert!(none.is_none() && diagnostics.iter().any(|fault| fault.code.name() == "several-tips"));
 }
 
+/// Where all fingers of a hand follow, the hand has the end effector: its tool's frame, or its link.
+#[test]
+fn hands_whose_fingers_follow_have_the_end_effector() {
+    let mut joints = vec![joint("head", "revolute", "base", "")];
+    for side in ["left", "right"] {
+        let follows = format!("<mimic joint='{side}_near'/>");
+        joints.push(joint(&format!("{side}_wrist"), "revolute", "base", ""));
+        joints.push(joint(&format!("{side}_near"), "revolute", &format!("{side}_wrist_link"), ""));
+        joints.push(joint(&format!("{side}_far"), "revolute", &format!("{side}_near_link"), &follows));
+        joints.extend((0..4).map(|k| joint(&format!("{side}_{k}"), "revolute", &format!("{side}_wrist_link"), &follows)));
+    }
+    joints.push(joint("right_tool", "fixed", "right_wrist_link", ""));
+    let imported = imported(&robot(&joints), &Options { all: true, ..Options::default() });
+    let arm = valid(&imported.yaml);
+    assert_eq!((arm.joints.len(), arm.dof()), (15, 5));
+    let tips: Vec<&str> = arm.tips.iter().map(|tip| tip.name.as_str()).collect();
+    assert_eq!(tips, ["head_link", "left_wrist_link", "right_tool_link"]);
+}
+
+/// A joint that moves nothing with mass is known before the description is read; an arm without any mass has kinematics, and no such joint.
+#[test]
+fn joints_that_move_no_mass_are_named() {
+    let light = |name: &str, parent: &str| {
+        let given = joint(name, "revolute", parent, "");
+        given.replacen(
+            BODY,
+            "<inertial><mass value='0'/><inertia ixx='0' iyy='0' izz='0' ixy='0' ixz='0' iyz='0'/></inertial>",
+            1,
+        )
+    };
+    let heavy = joint("heavy", "revolute", "base", "");
+    let idle = |joints: &[String], tip_link: &str| {
+        imported(&robot(joints), &Options { massless: true, ..tip(tip_link) }).report.idle().to_vec()
+    };
+    assert_eq!(idle(&[heavy.clone(), light("eye", "heavy_link")], "eye_link"), ["eye"]);
+    assert!(idle(&[light("first", "base"), joint("last", "revolute", "first_link", "")], "last_link").is_empty());
+    assert!(idle(&[light("first", "base"), light("last", "first_link")], "last_link").is_empty());
+    // Its follower has mass.
+    let led = joint("led", "revolute", "heavy_link", "<mimic joint='eye'/>");
+    assert!(idle(&[heavy, light("eye", "heavy_link"), led], "eye_link").is_empty());
+}
+
 /// A lock that no posture of the file has is named with both values, also where the leader rests beside the chain.
 #[test]
 fn locks_against_their_couplings_are_named() {

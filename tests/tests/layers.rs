@@ -102,7 +102,7 @@ const IMPORT: Layers = &[
     ("mjcf", &["body", "format", "number", "pose", "tree", "unread", "values", "written", "xml"]),
     ("chain", &["body", "format", "number", "pose", "snap", "tree", "values", "xml"]),
     ("bound", &["body", "chain", "pose", "written"]),
-    ("report", &["bound", "chain", "format", "snap"]),
+    ("report", &["body", "bound", "chain", "format", "snap"]),
     ("yaml", &["body", "chain", "pose", "report", "written"]),
     ("convert", &["number", "yaml"]),
     ("export", &["number", "pose", "written"]),

@@ -3,7 +3,7 @@
 //! | `about` | beside `name` and `text` | answer |
 //! |---|---|---|
 //! | `check` | | a file as `armgen check --format json` has it |
-//! | `import` | `tip`, `lock` (pairs of joint and value), `massless`, `inertia_as_written` | `yaml`, `report`, `lines`, `diagnostics` |
+//! | `import` | `tip`, `all`, `lock` (pairs of joint and value), `massless`, `inertia_as_written` | `yaml`, `report`, `lines`, `diagnostics` |
 //! | `summary` | | `text` of `armgen check` |
 //! | `picture` | `nonce` | `page`, the first step |
 //! | `rest` | | `rest`, its second step |
@@ -75,6 +75,7 @@ fn import(request: &Value, source: &Source) -> Value {
     let options = armgen_import::Options {
         lock: request["lock"].as_array().into_iter().flatten().filter_map(pair).collect(),
         tip: request["tip"].as_str().map(str::to_owned),
+        all: request["all"] == true,
         massless: request["massless"] == true,
         inertia_as_written: request["inertia_as_written"] == true,
         ..armgen_import::Options::default()

@@ -80,6 +80,18 @@ test("an arm of a URDF with several tips is chosen by a button", async () => {
     quiet(page);
 });
 
+test("all branches of a URDF are taken by a button", async () => {
+    const page = await opened();
+    const text = repository("import/tests/bad/several-tips-fingers.urdf");
+    await page.run(put(text, "arm.urdf"));
+    await page.until("document.querySelector('button[data-all]')");
+    await page.run("document.querySelector('button[data-all]').click()");
+    await page.until("document.querySelector('#yaml').textContent !== ''");
+    const { files } = run("arm.urdf", text, ["import", "arm.urdf", "--all", "--out", "out/robot.yaml"]);
+    assert.equal(await page.run("document.querySelector('#yaml').textContent"), Object.fromEntries(files)["robot.yaml"]);
+    quiet(page);
+});
+
 test("every pane shows what the program writes", async () => {
     const page = await opened();
     const own = { name: "scara.yaml", text: repository("robots/scara.yaml") };

@@ -50,6 +50,11 @@ export function tips(diagnostic) {
     return [...new Set([...remedies, ...others].map((match) => match[1]))];
 }
 
+/** Whether the remedy of a refusal of several tips takes all of them. @param {Diagnostic} diagnostic */
+export function takesAll(diagnostic) {
+    return diagnostic.help.includes("`--all`");
+}
+
 /** What a remedy puts in the place of a fault: the word that was meant. @param {Diagnostic} diagnostic @returns {string | null} */
 export function meant(diagnostic) {
     return diagnostic.help.match(/did you mean `([^`]+)`/)?.[1] ?? null;

@@ -4,7 +4,7 @@ import { byId, copy, download, html, withCode } from "./elements.mjs";
 import { Editor } from "./editor.mjs";
 import { Engine } from "./engine.mjs";
 import { fileOf, linkOf } from "./link.mjs";
-import { locks, meant, tips } from "./places.mjs";
+import { locks, meant, takesAll, tips } from "./places.mjs";
 import { zip } from "./zip.mjs";
 
 /** How long nobody types before a text is judged, ms. */
@@ -19,7 +19,7 @@ const editor = new Editor(byId("text"), byId("layer"), byId("gutter"));
 const root = document.documentElement;
 
 /** The file: its name and the choices of an import. */
-const file = { name: "robot.yaml", tip: /** @type {string | null} */ (null), lock: /** @type {[string, string][]} */ ([]) };
+const file = { name: "robot.yaml", tip: /** @type {string | null} */ (null), all: false, lock: /** @type {[string, string][]} */ ([]) };
 /** The description that the text is or becomes; null while it is faulty. @type {{name: string, text: string} | null} */
 let description = null;
 /** What counts texts: an answer to an older one is nobody's. */
@@ -38,7 +38,7 @@ async function judge() {
     const text = editor.text;
     const isModel = text.trimStart().startsWith("<");
     byId("of-import").hidden = !isModel;
-    const choices = { tip: file.tip, lock: file.lock, massless: byId("massless").checked, inertia_as_written: byId("as-written").checked };
+    const choices = { tip: file.tip, all: file.all, lock: file.lock, massless: byId("massless").checked, inertia_as_written: byId("as-written").checked };
     const answer = await engine.ask({ about: isModel ? "import" : "check", name: file.name, text, ...choices });
     if (own !== version || !answer) return;
     const judged = isModel ? (answer.file ?? {}) : answer;
@@ -97,7 +97,8 @@ function listFaults(diagnostics, fault) {
         };
         if (code === "several-tips") {
             const buttons = tips(diagnostic).map((tip) => choice(tip, { "data-tip": tip }, () => (file.tip = tip)));
-            item.append(html("p", { class: "tips" }, "take the arm that ends in ", ...buttons));
+            const all = takesAll(diagnostic) ? [", or ", choice("take all branches", { "data-all": "" }, () => (file.all = true))] : [];
+            item.append(html("p", { class: "tips" }, "take the arm that ends in ", ...buttons, ...all));
         } else {
             const buttons = locks(diagnostic).map(([joint, value]) => choice(`lock ${joint} at ${value}`, { "data-lock": joint }, () => file.lock.push([joint, value])));
             item.append(...buttons);
@@ -285,6 +286,7 @@ function report(answer) {
 function take(name, text) {
     file.name = name;
     file.tip = null;
+    file.all = false;
     file.lock = [];
     byId("name").textContent = name;
     editor.text = text.replace(/^\ufeff/, "");

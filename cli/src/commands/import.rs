@@ -160,6 +160,11 @@ pub(crate) fn run(file: &Path, choices: Choices, results: &Results) -> u8 {
     // this takes seconds, and `armgen check` reports them for every description.
     if imported.report.attached() <= MOST_BODIES {
         note_faults(&source, &options, &imported, results);
+    } else if let Some(joint) = imported.report.idle().first() {
+        terminal::note(&format!(
+            "{} is refused as it stands: nothing that joint `{joint}` moves has mass or inertia; let it stand still by `--lock {joint}=0`, or give its link mass and inertia",
+            called(results)
+        ));
     }
     let json = imported.report.to_json();
     for (path, text) in [(&results.report, &json), (&results.out, &imported.yaml)] {
@@ -175,9 +180,14 @@ pub(crate) fn run(file: &Path, choices: Choices, results: &Results) -> u8 {
     }
 }
 
+/// How notes call the description.
+fn called(results: &Results) -> String {
+    results.out.as_deref().map_or_else(|| "the description".to_owned(), |out| out.display().to_string())
+}
+
 /// Faults of the description that only its equations show, the kinds of its warnings, and what becomes of inverse kinematics.
 fn note_faults(source: &Source, options: &Options, imported: &Imported, results: &Results) {
-    let called = results.out.as_deref().map_or_else(|| "the description".to_owned(), |out| out.display().to_string());
+    let called = called(results);
     let as_description = Source::new(called.as_str(), imported.yaml.clone());
     let (valid, of_description) = armgen_codegen::validate::read(&as_description);
     let of = |severity| of_description.iter().filter(move |diagnostic| diagnostic.code.severity() == severity);

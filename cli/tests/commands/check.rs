@@ -35,6 +35,37 @@ fn a_summary_shows_links_and_what_identification_would_miss() {
     assert!(text.contains("`base_regressor` has 36 columns of these 50:\n  the other 14 are 0"), "{text}");
 }
 
+/// What turns a motor is a sentence; friction at several joints is refused where single ones are meant.
+#[test]
+fn motors_that_turn_with_several_joints_are_told() {
+    let wrist = file("tests/data/trees/coupled_wrist.yaml");
+    let text = out(&check(&["check", &wrist], 0));
+    let words: Vec<&str> = text.split_whitespace().collect();
+    let told = words.join(" ");
+    assert!(told.contains("motor that of J6 rides on link J3 and turns by 50 J6 + J4 - 50 J5 beside it"), "{told}");
+    assert!(!told.contains("that of J3 rides"), "{told}");
+    let said = err(&check(&["excite", &wrist], 1));
+    assert!(said.contains("the motor of joint `J5` turns with several joints"), "{said}");
+}
+
+/// The limits of a coordinate are the tighter ones of its joint and of those that follow it.
+#[test]
+fn limits_of_coordinates_stand_below_those_of_joints() {
+    let folder = folder("limits-of-coordinates");
+    let text = fs::read_to_string(file("tests/data/trees/gripper_arm.yaml")).expect("a description");
+    let limited = text.replacen("    axis: [0, 1, 0]\n", "    axis: [0, 1, 0]\n    limits: {position: [0, 0.04]}\n", 1).replacen(
+        "    follows: {finger: 1}\n",
+        "    follows: {finger: 1}\n    limits: {position: [0.01, 0.05]}\n",
+        1,
+    );
+    let path = folder.join("gripper.yaml");
+    fs::write(&path, limited).expect("written");
+    let text = out(&check(&["check", "--full", &path.display().to_string()], 0));
+    let has_row = |cells: &str| text.lines().any(|line| line.split_whitespace().eq(cells.split(' ')));
+    assert!(has_row("3 finger 0 to 0.04 m") && has_row("4 finger_right 0.01 to 0.05 m"), "{text}");
+    assert!(text.contains("limits of coordinates") && has_row("finger 0.01 to 0.04 m"), "{text}");
+}
+
 #[test]
 fn a_base_parameter_is_listed_with_its_combination() {
     let text = out(&check(&["check", "--full", &file("tests/robots/base_set.yaml")], 0));

@@ -108,7 +108,7 @@ pub(super) struct Ends {
 }
 
 /// All leaves that a joint moves, those that differ by fixed joints alone once, in the order of the file. Where they are too many, those on
-/// joints that follow others have no end effector.
+/// joints that follow others have no end effector; the link where their branches begin has it.
 pub(super) fn all(tree: &Tree, base: usize, locks: &Locks, diagnostics: &mut Diagnostics) -> Option<Ends> {
     let groups = leaves(tree, base, locks);
     let best = |leaves: &Vec<Candidate>| {
@@ -137,7 +137,11 @@ pub(super) fn all(tree: &Tree, base: usize, locks: &Locks, diagnostics: &mut Dia
     let (mut notes, mut others) = (Vec::new(), Vec::new());
     if ends.len() > MAX_TIPS {
         let followers = locks.all_followers();
-        let (led, own): (Vec<Candidate>, Vec<Candidate>) = ends.iter().partition(|end| followers.contains(&end.last));
+        let (led, mut own): (Vec<Candidate>, Vec<Candidate>) = ends.iter().partition(|end| followers.contains(&end.last));
+        let hands = before_followers(tree, base, locks, (&led, &own), &groups);
+        if (1..=MAX_TIPS).contains(&(own.len() + hands.len())) {
+            own.extend(hands);
+        }
         if !led.is_empty() && (1..=MAX_TIPS).contains(&own.len()) {
             notes.push(format!("without an end effector, since the last joint follows another one: {}", named(&led)));
             (ends, others) = (own, led);
@@ -156,6 +160,34 @@ pub(super) fn all(tree: &Tree, base: usize, locks: &Locks, diagnostics: &mut Dia
     notes.insert(0, format!("end effectors: {}", named(&ends)));
     let links = |ends: Vec<Candidate>| ends.into_iter().map(|end| end.link).collect();
     Some(Ends { tips: links(ends), others: links(others), notes })
+}
+
+/// The last links before branches that end with followers, where no other branch begins behind them; a tool's frame that is fixed to such a link
+/// in its place.
+fn before_followers(
+    tree: &Tree,
+    base: usize,
+    locks: &Locks,
+    (led, own): (&[Candidate], &[Candidate]),
+    groups: &BTreeMap<usize, Vec<Candidate>>,
+) -> Vec<Candidate> {
+    let is_below = |link: usize, above: usize| tree.path(above, link).is_some();
+    let carries_others = |link: usize| own.iter().any(|end| is_below(end.link, link));
+    let all = led.iter().filter_map(|end| before_branches(tree, base, end.link, locks));
+    let all: Vec<(usize, usize)> = all.filter(|(link, _)| !carries_others(*link)).collect();
+    let mut hands: Vec<Candidate> = Vec::new();
+    for &(link, joints) in &all {
+        let is_outer = all.iter().all(|&(other, _)| other == link || !is_below(link, other));
+        let last = tree.path(base, link).into_iter().flatten().rfind(|&j| tree.joints[j].kind.moves() && locks.of(j).is_none());
+        let Some(last) = last.filter(|_| is_outer) else { continue };
+        if hands.iter().any(|hand| hand.last == last) {
+            continue;
+        }
+        let named = |leaf: &&Candidate| names::tool(&tree.links[leaf.link].name).map(|rank| (rank, leaf.link));
+        let tool = groups.get(&last).into_iter().flatten().filter_map(|leaf| named(&leaf)).min();
+        hands.push(Candidate { link: tool.map_or(link, |(_, link)| link), last, joints });
+    }
+    hands
 }
 
 /// Whether a joint is above another one.

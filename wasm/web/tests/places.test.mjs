@@ -1,6 +1,6 @@
 import assert from "node:assert/strict";
 import test from "node:test";
-import { apart, lineStarts, locks, meant, offset, range, tips } from "../places.mjs";
+import { apart, lineStarts, locks, meant, offset, range, takesAll, tips } from "../places.mjs";
 
 test("columns count characters, offsets units of UTF-16", () => {
     const text = "a\n😀b: c\n\nend";
@@ -42,6 +42,7 @@ test("remedies are read from diagnostics", () => {
     const message = "several links may be the tip: `a` (7 joints), `b` (8 joints, and 1 leaf fixed to its last link)";
     const help = "choose one: `--tip hand` (7 joints); or end the arm where it branches: `--tip a` (6 joints)";
     assert.deepEqual(tips({ message, help }), ["hand", "a", "b"]);
+    assert.deepEqual([takesAll({ help }), takesAll({ help: `${help}; or take all branches: \`--all\`` })], [false, true]);
     assert.deepEqual(locks({ help: "stands at 0: `--lock left=0` `--lock right=-pi/4`" }), [["left", "0"], ["right", "-pi/4"]]);
     assert.equal(meant({ help: "did you mean `gravity`? keys here: name" }), "gravity");
     assert.equal(meant({ help: "keys here: name" }), null);
