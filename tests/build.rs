@@ -18,7 +18,7 @@ mod signatures;
 const NARROW: [&str; 4] = ["everything", "puma560", "scara", "scara4"];
 
 /// The robots that are emitted with functions for many states.
-const BATCHES: [(&str, &str, Trig, Scalar, usize); 6] = [
+const BATCHES: [(&str, &str, Trig, Scalar, usize); 8] = [
     // Functions for one state call `sin_cos_one` alone, those for many `sin_cos`, too.
     ("robots/single_joint.yaml", "single_joint_batch", Trig::Fast, Scalar::F64, 4),
     ("../robots/scara4.yaml", "scara4_batch", Trig::Fast, Scalar::F64, 8),
@@ -27,6 +27,9 @@ const BATCHES: [(&str, &str, Trig, Scalar, usize); 6] = [
     ("robots/everything.yaml", "everything_batch_f32", Trig::Fast, Scalar::F32, 12),
     ("../robots/scara4.yaml", "scara4_batch_std", Trig::Std, Scalar::F64, 3),
     ("../robots/ur5.yaml", "ur5_batch", Trig::Libm, Scalar::F64, 4),
+    // Angles that functions compute.
+    ("data/trees/helix.yaml", "helix_batch", Trig::Fast, Scalar::F64, 4),
+    ("data/trees/helix.yaml", "helix_batch_f32", Trig::Fast, Scalar::F32, 8),
 ];
 
 /// The robots that are emitted with inverse kinematics.

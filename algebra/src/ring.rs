@@ -17,6 +17,9 @@
 //! the old one: that finds sin² + cos² = 1, distributivity and the addition theorems without a rewrite rule, and it makes every
 //! identity between expressions an exact test. The points are fixed: the same expressions on every machine, in every run.
 //!
+//! **Computed angles**, sums of coordinates with factors that are no whole numbers, have sines and cosines that are inputs, too; the field
+//! relates those of one unit ([`field::computed`]).
+//!
 //! **Constants** are interned by their form. Two of different forms are the same where their values in the field are equal and enclosures of
 //! 96 bits overlap.
 
@@ -416,10 +419,10 @@ impl Pool {
     fn symbol_value(&self, symbol: Symbol, point: u64) -> Element {
         let value = |kind: u64, index: u16| self.field.from_u64(scramble(scramble(kind << 20 | u64::from(index)) ^ (point + 1)));
         match symbol {
-            Symbol::Sine(i) => self.field.circle(value(1, i)).0,
-            Symbol::Cosine(i) => self.field.circle(value(1, i)).1,
-            Symbol::SineOf(sum) => self.field.circle_of(sum, |i| self.field.circle(value(1, i))).0,
-            Symbol::CosineOf(sum) => self.field.circle_of(sum, |i| self.field.circle(value(1, i))).1,
+            Symbol::Sine(i) => self.field.point(i, |unit| value(1, unit)).0,
+            Symbol::Cosine(i) => self.field.point(i, |unit| value(1, unit)).1,
+            Symbol::SineOf(sum) => self.field.circle_of(sum, |i| self.field.point(i, |unit| value(1, unit))).0,
+            Symbol::CosineOf(sum) => self.field.circle_of(sum, |i| self.field.point(i, |unit| value(1, unit))).1,
             Symbol::Position(i) => value(2, i),
             Symbol::Rate(i) => value(3, i),
             Symbol::OfRate(of, i) => value(of.kind(), i),

@@ -45,6 +45,7 @@ fn functions(source: &Source, programs: &[&Program<f64>], report: &mut Report) -
     let vector = Vector::of(&manipulator, &constants::parameter_names(&module))?;
     let claims = Claims::from_numbers(&generated.constants)?.used(&module, &constants::claimed_constants(&vector, &module));
     let base = constants::base_parameters(&manipulator, &claims, &module);
+    constants::name_angles(&mut module, &manipulator, &claims);
     let checker = Checker::new(manipulator, vector, claims, Effort::default(), &module, base)?;
     report.functions = checker.functions(&module);
     Ok(())
@@ -123,15 +124,14 @@ impl Arithmetic<f64> for Steps {
             let unknown = self.unknown("the sine of anything but joint variables");
             return (unknown, unknown);
         }
-        let mut terms: Vec<(usize, i64)> =
-            angle.terms.iter().map(|&(joint, minus)| (joint, if minus { -1 } else { 1 })).collect();
-        terms.sort_unstable();
+        let factors: Vec<Option<usize>> = angle.factors.iter().map(|factor| factor.map(|factor| self.literal(factor))).collect();
+        let terms = angle.terms.iter().map(|&(joint, minus)| (joint, if minus { -1 } else { 1 })).collect();
         let turn = angle.turn.map(|turn| {
             let literal = self.literal(turn);
             self.turns.push(literal);
             (self.turns.len() - 1, turn.is_sign_negative())
         });
-        let angle = checked::Angle { terms, turn };
+        let angle = checked::Angle { terms, turn, factors, computed: None }.sorted();
         (self.push(Step::Sine(angle.clone())), self.push(Step::Cosine(angle)))
     }
 

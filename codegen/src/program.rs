@@ -14,6 +14,7 @@ use std::collections::BTreeMap;
 use crate::catalogue::{Absent, Argument, Parameter, Quantity, Sizes};
 use crate::exact::Number;
 use crate::kinds::{Feature, Scalar};
+use crate::ring::field::computed::ComputedAngle;
 use crate::ring::Symbol;
 use armgen_description::language::Language;
 
@@ -115,6 +116,8 @@ pub struct Function {
     pub method: &'static str,
     /// The Stribeck velocities of the joints whose Stribeck friction it uses.
     pub stribeck: BTreeMap<u16, Number>,
+    /// The angles that it computes, by the indices of their sines and cosines.
+    pub computed: BTreeMap<u16, ComputedAngle>,
     /// Whether sums take products without rounding them: [`Function::products_in_sums`].
     pub fuse: bool,
 }
@@ -294,6 +297,8 @@ impl Module {
         });
         let parameters = self.parameters.iter().chain(&self.base_set).map(|parameter| &parameter.nominal);
         let motors = self.motors.iter().flat_map(|motors| motors.rates.iter().flatten());
-        constants.chain(parameters).chain(motors).find(|value| !self.scalar.holds(value))
+        let angles = self.functions.iter().flat_map(|f| f.computed.values());
+        let of_angles = angles.flat_map(|angle| angle.factors.iter().map(|(_, factor)| factor).chain([&angle.offset]));
+        constants.chain(of_angles).chain(parameters).chain(motors).find(|value| !self.scalar.holds(value))
     }
 }

@@ -162,14 +162,28 @@ fn lower(model: &Model, quantity: &'static Quantity, with_parameters: bool, deri
     let (steps, outputs) = steps(&derivation.pool, &derivation.entries, &order);
     let arguments = quantity.arguments_of(with_parameters, model.manipulator.gravity_is_argument).collect();
     let method = derivation.method;
-    let mut function =
-        Function { quantity, with_parameters, arguments, steps, outputs, method, stribeck: BTreeMap::new(), fuse: false };
+    let mut function = Function {
+        quantity,
+        with_parameters,
+        arguments,
+        steps,
+        outputs,
+        method,
+        stribeck: BTreeMap::new(),
+        computed: BTreeMap::new(),
+        fuse: false,
+    };
     let coordinates = model.manipulator.coordinates();
     let velocity = |symbol| match symbol {
         Symbol::OfRate(Elementary::Decay, i) => Some((i, coordinates[usize::from(i)].joint.decay_velocity()?)),
         _ => None,
     };
     function.stribeck = function.symbols().into_iter().filter_map(velocity).collect();
+    let computed = |symbol| match symbol {
+        Symbol::Sine(i) | Symbol::Cosine(i) => Some((i, derivation.pool.field().computed()?.get(i)?.clone())),
+        _ => None,
+    };
+    function.computed = function.symbols().into_iter().filter_map(computed).collect();
     function
 }
 

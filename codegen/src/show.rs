@@ -36,7 +36,7 @@ mod steps;
 mod text;
 
 use std::collections::BTreeSet;
-use std::sync::OnceLock;
+use std::sync::{Arc, OnceLock};
 
 pub use derived::ASK_THE_PAGE;
 pub use item::Item;
@@ -47,6 +47,7 @@ use crate::derive::determinant::minors::Product;
 use crate::derive::determinant::{Factor, Zeros};
 use crate::exact::Number;
 use crate::parallel::parallel_map;
+use crate::ring::field::computed::ComputedAngles;
 use crate::ring::normal_form::NormalForm;
 use crate::ring::print::{Notation, Printer};
 use crate::Model;
@@ -113,6 +114,8 @@ pub struct Shown {
     pub parameters: Vec<String>,
     /// Velocities of the joints' friction; 1 where it has no velocity.
     pub velocities: Vec<Number>,
+    /// Angles that functions compute.
+    pub computed: Option<Arc<ComputedAngles>>,
     /// For the determinant, its factors and where each is zero; for minors, the factors that they share.
     pub factors: Option<Vec<Factor>>,
     /// Digits of constants; none: exactly.
@@ -201,7 +204,8 @@ impl Shown {
     }
 
     fn printer(&self, notation: Notation) -> Printer<'_> {
-        Printer { notation, parameters: &self.parameters, velocities: &self.velocities, digits: self.digits }
+        let computed = self.computed.as_deref();
+        Printer { notation, parameters: &self.parameters, velocities: &self.velocities, computed, digits: self.digits }
     }
 
     /// Whether it is a matrix of closed forms that fits a table.

@@ -222,8 +222,6 @@ codes! {
         UnknownCarrier Error "unknown-carrier",
         /// `on` of a motor without `axis`.
         CarrierWithoutAxis Error "carrier-without-axis",
-        /// A joint that turns and follows others by no whole number.
-        FractionalFactor Error "fractional-factor",
         /// `follows` and `adds` at one joint.
         FollowsAndAdds Error "follows-and-adds",
         /// `offset` beside neither `follows` nor `adds`.
@@ -287,6 +285,8 @@ codes! {
         OneTip Warning "one-tip",
         /// An effort limit of a joint without a coordinate.
         FollowerEffort Warning "follower-effort",
+        /// A factor of so many digits that its angle is taken as unrelated to that of its leader.
+        UnrelatedFactor Warning "unrelated-factor",
         /// Principal moments that no body has.
         TriangleInequality Warning "triangle-inequality",
         /// A tensor that no body has, taken as written since the file allows it.

@@ -17,6 +17,7 @@
 
 use crate::exact::{Number, Polynomial};
 use crate::kinds::{Feature, JointKind, ParameterId, TaskRow};
+use armgen_algebra::ring::field::computed::ComputedAngle;
 
 /// Index into [`Manipulator::joints`]; link i is the one that joint i moves.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
@@ -137,12 +138,41 @@ pub struct Coupling {
 /// The variable of a joint as a sum over coordinates.
 #[derive(Clone, Debug)]
 pub struct JointVariable {
-    /// Coordinates with their factors, ascending; no factor is 0. Those of a joint that turns are whole, of coordinates that turn.
+    /// Coordinates with their factors, ascending; no factor is 0.
     pub factors: Vec<(usize, Number)>,
     /// The constant part.
     pub offset: Number,
     /// Sine and cosine of the constant part, of a joint that turns.
     pub turn: Option<[Number; 2]>,
+    /// Of a joint that turns: whether its factors are whole, few in all, and of coordinates that turn, so that its sine and cosine are polynomials in
+    /// theirs. Of others they are those of an angle that a function computes.
+    pub is_whole: bool,
+}
+
+impl JointVariable {
+    /// Of a joint whose angle a function computes: its variable, or the opposite where its first factor is negative, and whether it is the opposite.
+    pub fn computed(&self) -> Option<(ComputedAngle, bool)> {
+        let [sine, cosine] = self.turn.as_ref().filter(|_| !self.is_whole)?;
+        let opposite = self.factors.first().is_some_and(|(_, factor)| factor.is_negative());
+        let signed = |number: &Number| if opposite { -number } else { number.clone() };
+        let mut factors: Vec<(u16, Number)> = self.factors.iter().map(|(a, factor)| (*a as u16, signed(factor))).collect();
+        factors.sort_by_key(|(_, factor)| factor.is_negative());
+        let angle = ComputedAngle { factors, offset: signed(&self.offset), turn: [signed(sine), cosine.clone()] };
+        Some((angle, opposite))
+    }
+}
+
+impl Coupling {
+    /// The angles that functions compute, each once.
+    pub fn computed(&self) -> Vec<ComputedAngle> {
+        let mut all: Vec<ComputedAngle> = Vec::new();
+        for (angle, _) in self.variables.iter().filter_map(JointVariable::computed) {
+            if !all.contains(&angle) {
+                all.push(angle);
+            }
+        }
+        all
+    }
 }
 
 /// A coordinate of an arm.

@@ -60,7 +60,7 @@ pub fn function<T: Scalar>(module: &Module, of: &steps::Function) -> Function<T>
     let mut inputs: Vec<Input<T>> = Vec::new();
     let mut known: BTreeMap<Symbol, usize> = BTreeMap::new();
     let mut waves = Vec::new();
-    for (i, angle) in angles(&symbols).into_iter().enumerate() {
+    for (i, angle) in angles(&symbols, &of.computed).into_iter().enumerate() {
         for (name, input) in [(angle.sine, Input::Sine(i)), (angle.cosine, Input::Cosine(i))] {
             if let Some(Name::SineOrCosine(symbol)) = name {
                 known.insert(symbol, inputs.len());
@@ -70,7 +70,12 @@ pub fn function<T: Scalar>(module: &Module, of: &steps::Function) -> Function<T>
         waves.push(Angle {
             argument: place(Argument::Q),
             terms: angle.terms.iter().map(|&(joint, minus)| (usize::from(joint), minus)).collect(),
-            turn: module.turn.as_ref().filter(|_| angle.turned).map(T::nearest),
+            factors: if angle.computed.is_some() {
+                angle.factors().iter().map(|factor| factor.as_ref().map(T::nearest)).collect()
+            } else {
+                Vec::new()
+            },
+            turn: angle.constant(module.turn.as_ref()).map(T::nearest),
         });
     }
     for symbol in symbols.into_iter().filter(|symbol| symbol.angle().is_none()) {

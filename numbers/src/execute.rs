@@ -210,9 +210,16 @@ impl<T: Scalar> Run<'_, T> {
 
     #[inline(always)]
     fn angle<const L: usize>(&self, angle: &Angle<T>, first: usize) -> [T; L] {
-        let mut sum: [T; L] = self.read(angle.argument, angle.terms[0].0, first);
-        for &(entry, minus) in &angle.terms[1..] {
-            let term: [T; L] = self.read(angle.argument, entry, first);
+        let term = |i: usize| {
+            let mut term: [T; L] = self.read(angle.argument, angle.terms[i].0, first);
+            if let Some(Some(factor)) = angle.factors.get(i) {
+                term.iter_mut().for_each(|x| *x = *factor * *x);
+            }
+            term
+        };
+        let mut sum = term(0);
+        for (k, &(_, minus)) in angle.terms.iter().enumerate().skip(1) {
+            let term = term(k);
             for i in 0..L {
                 sum[i] = if minus { sum[i] - term[i] } else { sum[i] + term[i] };
             }

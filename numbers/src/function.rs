@@ -52,13 +52,15 @@ pub enum Sines {
     Fast,
 }
 
-/// An angle, rad: entries of one argument, added and subtracted from left to right, then a constant.
+/// An angle, rad: entries of one argument, each perhaps times a factor, added and subtracted from left to right, then a constant.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Angle<T> {
     /// The argument, by its place among the arguments.
     pub argument: usize,
     /// Its entries, and whether they are subtracted. The first one is added.
     pub terms: Vec<(usize, bool)>,
+    /// Factors of the terms, each multiplied before it is added; `None` is 1. Empty where all are 1.
+    pub factors: Vec<Option<T>>,
     /// The constant.
     pub turn: Option<T>,
 }

@@ -26,7 +26,7 @@
 //!     arguments: vec![Argument { name: "q".into(), length: 1 }],
 //!     results: vec![Result { name: "g".into(), shape: vec![1] }],
 //!     sines: Sines::Libm,
-//!     angles: vec![armgen_numbers::Angle { argument: 0, terms: vec![(0, false)], turn: None }],
+//!     angles: vec![armgen_numbers::Angle { argument: 0, terms: vec![(0, false)], factors: vec![], turn: None }],
 //!     inputs: vec![Input::Sine(0)],
 //!     operations: vec![Operation { operator: Operator::Multiply, left: Operand::Constant(9.81), right: Operand::Value(0) }],
 //!     outputs: vec![Output { operand: Operand::Value(1), negated: false }],

@@ -121,7 +121,7 @@ pub enum Invalid {
         /// The input, by its place.
         input: usize,
     },
-    /// An angle has no terms, begins with a subtraction, or names entries that do not exist.
+    /// An angle has no terms, begins with a subtraction, has another number of factors, or names entries that do not exist.
     Angle {
         /// The angle, by its place.
         angle: usize,
@@ -257,7 +257,8 @@ fn check<T: Scalar>(function: &Function<T>) -> Result<(), Invalid> {
     let is_entry = |argument: usize, entry: usize| function.arguments.get(argument).is_some_and(|of| entry < of.length);
     for (i, angle) in function.angles.iter().enumerate() {
         let begins = angle.terms.first().is_some_and(|&(_, minus)| !minus);
-        if !begins || !angle.terms.iter().all(|&(entry, _)| is_entry(angle.argument, entry)) {
+        let fits = angle.factors.is_empty() || angle.factors.len() == angle.terms.len();
+        if !begins || !fits || !angle.terms.iter().all(|&(entry, _)| is_entry(angle.argument, entry)) {
             return Err(Invalid::Angle { angle: i });
         }
     }

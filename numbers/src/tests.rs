@@ -37,8 +37,13 @@ const LENGTHS: [usize; 2] = [3, 2];
 fn random_function(random: &mut Random) -> Function<f64> {
     let argument = |(name, length): (&str, usize)| Argument { name: name.into(), length };
     let angles: Vec<Angle<f64>> = vec![
-        Angle { argument: 0, terms: vec![(2, false)], turn: None },
-        Angle { argument: 0, terms: vec![(0, false), (1, true), (2, false)], turn: Some(-0.5) },
+        Angle { argument: 0, terms: vec![(2, false)], factors: vec![], turn: None },
+        Angle {
+            argument: 0,
+            terms: vec![(0, false), (1, true), (2, false)],
+            factors: vec![None, Some(0.75), Some(1.25)],
+            turn: Some(-0.5),
+        },
     ];
     let inputs = vec![
         Input::Sine(0),
@@ -96,9 +101,9 @@ fn sign(x: f64) -> f64 {
 }
 
 fn sin_cos(angle: &Angle<f64>, sines: Sines, arguments: [&[f64]; 2]) -> (f64, f64) {
-    let entry = |i: usize| arguments[angle.argument][i];
-    let term = |sum: f64, &(i, minus): &(usize, bool)| if minus { sum - entry(i) } else { sum + entry(i) };
-    let sum = angle.terms[1..].iter().fold(entry(angle.terms[0].0), term);
+    let value = |k: usize| angle.factors.get(k).copied().flatten().unwrap_or(1.0) * arguments[angle.argument][angle.terms[k].0];
+    let term = |sum: f64, k: usize| if angle.terms[k].1 { sum - value(k) } else { sum + value(k) };
+    let sum = (1..angle.terms.len()).fold(value(0), term);
     let sum = angle.turn.map_or(sum, |turn| sum + turn);
     match sines {
         Sines::Libm => libm::sincos(sum),

@@ -106,9 +106,16 @@ fn operand(function: &Function, turn: f64, values: &[f64], arguments: &Arguments
         vector[usize::from(i)]
     };
     let a = arguments;
+    let angle = |i: u16| match function.computed.get(&i) {
+        Some(angle) => {
+            let terms = angle.factors.iter().map(|(of, factor)| factor.to_f64() * given(Argument::Q, &a.q, *of));
+            terms.reduce(|a, b| a + b).unwrap_or_default() + angle.offset.to_f64()
+        }
+        None => given(Argument::Q, &a.q, i),
+    };
     match symbol {
-        Symbol::Sine(i) => given(Argument::Q, &a.q, i).sin(),
-        Symbol::Cosine(i) => given(Argument::Q, &a.q, i).cos(),
+        Symbol::Sine(i) => angle(i).sin(),
+        Symbol::Cosine(i) => angle(i).cos(),
         Symbol::SineOf(sum) => sum_of(sum, turn, &|i| given(Argument::Q, &a.q, i)).sin(),
         Symbol::CosineOf(sum) => sum_of(sum, turn, &|i| given(Argument::Q, &a.q, i)).cos(),
         Symbol::Position(i) => given(Argument::Q, &a.q, i),

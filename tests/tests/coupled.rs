@@ -10,12 +10,13 @@ use armgen_codegen::schedule::Options;
 use armgen_codegen::show::{Form, Item, Reading, Sheet, Style};
 use armgen_codegen::source::Source;
 use armgen_codegen::validate;
-use armgen_codegen::{Generated, Model};
+use armgen_codegen::{Generated, Model, Scalar};
 use armgen_runtime::nalgebra::SVector;
 use armgen_runtime::robot::{Dynamics, Kinematics, LinkJacobians};
 use armgen_tests::functions::{Arguments, Functions};
 use armgen_tests::interpreter::Interpreted;
 use armgen_tests::precision::{deviation, REFERENCE};
+use armgen_tests::random::Random;
 use armgen_verify::checker::Effort;
 use armgen_verify::claims::Claims;
 use armgen_verify::reader::ModuleText;
@@ -37,7 +38,12 @@ const PARALLELOGRAM: &str = include_str!("../data/trees/parallelogram.yaml");
 const GRIPPER: &str = include_str!("../data/trees/gripper_arm.yaml");
 /// The third coordinate is counted from the horizontal.
 const LINKED: &str = include_str!("../data/trees/linked_3.yaml");
-const ALL: [(&str, &str); 3] = [("parallelogram", PARALLELOGRAM), ("gripper_arm", GRIPPER), ("linked_3", LINKED)];
+/// A slide that follows a turn, by a factor with pi, and a turn that follows it by 0.785.
+const SCREW: &str = include_str!("../data/trees/screw.yaml");
+/// A slide and a turn lead a turn.
+const HELIX: &str = include_str!("../data/trees/helix.yaml");
+const ALL: [(&str, &str); 4] =
+    [("parallelogram", PARALLELOGRAM), ("gripper_arm", GRIPPER), ("linked_3", LINKED), ("screw", SCREW)];
 
 fn numbers(value: &Value) -> Vec<f64> {
     value.as_array().expect("a list").iter().map(|x| x.as_f64().expect("a number")).collect()
@@ -90,7 +96,7 @@ fn judged(source: &Source, generated: &Generated, language: Language, text: &str
 
 #[test]
 fn the_checker_proves_coupled_arms_in_every_language() {
-    for text in [PARALLELOGRAM, GRIPPER] {
+    for text in [PARALLELOGRAM, GRIPPER, SCREW] {
         let (source, generated) = generated(text);
         for language in Language::ALL {
             let report = judged(&source, &generated, language, &generated.in_language(language));
@@ -101,6 +107,23 @@ fn the_checker_proves_coupled_arms_in_every_language() {
     let (source, generated) = generated(LINKED);
     let report = judged(&source, &generated, Language::Rust, &generated.module);
     assert!(report.passed(), "{}", report.first_fault().unwrap_or_default());
+}
+
+/// A slide and a turn lead a turn, in single precision; and the angle is written out for people.
+#[test]
+fn computed_angles_are_proved_in_single_precision() {
+    let source = Source::new("robot.yaml", HELIX);
+    let options = Options { trig: Trig::Fast, scalar: Scalar::F32, ..Options::default() };
+    let generated = armgen_codegen::generate(&source, &options).0.expect("a module");
+    for language in [Language::Rust, Language::C] {
+        let report = judged(&source, &generated, language, &generated.in_language(language));
+        assert!(report.passed(), "{}", report.first_fault().unwrap_or_default());
+    }
+    assert!(generated.module.contains("12.5 * q[0] - 0.785 * q[1] + 0.1"), "{}", generated.module);
+    let model = Model::new(validate::read(&source).0.expect("valid").0);
+    let items = Item::named("gravity", 4, &model.manipulator.tips);
+    let text = Sheet::in_style(&model, &items, Reading::Nominal, Style { form: Form::Shortest, digits: None }).text();
+    assert!(text.contains("(25/2*q1 - 157/200*q2 + 1/10)"), "{text}");
 }
 
 /// A factor of the other sign, or a follower left out, is another robot: every function that it moves is refused.
@@ -132,7 +155,7 @@ fn a_module_of_another_coupling_is_refused() {
 /// How many of the parameters of links a motion tells, without drives and friction (ranks in a field and singular values of two other programs).
 #[test]
 fn base_parameters_of_coupled_arms_are_counted_exactly() {
-    for ((name, text), expected) in ALL.into_iter().zip([8, 10, 36]) {
+    for ((name, text), expected) in ALL.into_iter().zip([8, 10, 36, 20]) {
         let lines = text.lines().filter(|line| !line.starts_with("    motor:") && !line.starts_with("    friction:"));
         let text = lines.map(|line| format!("{line}\n")).collect::<String>();
         let (arm, _) = validate::read(&Source::new("robot.yaml", text)).0.expect("valid");
@@ -140,6 +163,174 @@ fn base_parameters_of_coupled_arms_are_counted_exactly() {
         let (vector, _) = base::base_combinations(&model.manipulator, &model.field);
         assert_eq!(vector.entries.len(), expected, "{name}");
     }
+}
+
+/// Factors with another digit, without a sign or with another constant: the argument of the sine is another one.
+#[test]
+fn a_module_of_another_computed_angle_is_refused() {
+    let (source, right) = generated(SCREW);
+    for (of, by) in [
+        ("follows: {nut: 0.785}", "follows: {nut: 0.786}"),
+        ("follows: {nut: 0.785}", "follows: {nut: -0.785}"),
+        ("offset: 0.1", "offset: 0.11"),
+    ] {
+        let other = SCREW.replacen(of, by, 1);
+        assert_ne!(other, SCREW);
+        let report = judged(&source, &generated(&other).1, Language::Rust, &generated(&other).1.module);
+        let refused: Vec<&str> = report.functions.iter().filter(|f| f.verdict != Equal).map(|f| f.name.as_str()).collect();
+        for function in ["end_direct_kinematics", "inertia_matrix", "coriolis_matrix", "gravity", "joint_variables"] {
+            assert!(refused.contains(&function), "{by}: {refused:?}");
+        }
+    }
+    for (of, by) in [
+        ("0.785 * q[1] + 0.1", "0.7850000000000001 * q[1] + 0.1"),
+        ("0.785 * q[1] + 0.1", "0.785 * q[0] + 0.1"),
+        ("0.785 * q[1] + 0.1", "0.785 * q[1] - 0.1"),
+        ("0.785 * q[1] + 0.1", "0.785 * q[1]"),
+    ] {
+        let wrong = right.module.replace(of, by);
+        assert_ne!(wrong, right.module, "{of}");
+        assert!(!judged(&source, &right, Language::Rust, &wrong).passed(), "{by}");
+    }
+}
+
+/// A wrist that turns, a slide, and four joints that follow them or each other by numbers of every kind; the same with all joints free; and S and
+/// c of q = S p + c.
+fn hand(random: &mut Random) -> (String, String, Vec<[f64; 2]>, Vec<f64>) {
+    const FACTORS: [(&str, f64); 12] = [
+        ("2/3", 2.0 / 3.0),
+        ("1/3", 1.0 / 3.0),
+        ("0.785", 0.785),
+        ("-1.0585", -1.0585),
+        ("1.1232", 1.1232),
+        ("-0.5", -0.5),
+        ("sqrt(2)", std::f64::consts::SQRT_2),
+        ("2/pi", std::f64::consts::FRAC_2_PI),
+        ("-17", -17.0),
+        ("0.02/(2*pi)", 0.01 / std::f64::consts::PI),
+        ("-1", -1.0),
+        ("1.234567890123456", 1.234_567_890_123_456),
+    ];
+    const OFFSETS: [(&str, f64); 4] = [("0", 0.0), ("0.1", 0.1), ("pi/2", std::f64::consts::FRAC_PI_2), ("-0.3", -0.3)];
+    let mut coupled = String::from("name: hand\nconvention: urdf\ngravity: [1, 2, -9.81]\njoints:\n");
+    let mut free = coupled.clone();
+    let (mut rows, mut offsets) = (vec![[1.0, 0.0], [0.0, 1.0]], vec![0.0; 2]);
+    for i in 0..6 {
+        let kind = if i != 1 && (i != 4 || random.chance(50)) { "revolute" } else { "prismatic" };
+        let axis = random.one_of(&["[0, 0, 1]", "[0, 1, 0]", "[1, 2, -2]", "[0, 0, -1]"]);
+        let parent = if i == 0 { String::new() } else { format!("    parent: j{}\n", random.whole(0, i - 1)) };
+        let mut row =
+            format!("  - name: j{i}\n    type: {kind}\n{parent}    origin: {{xyz: [0.1, 0.0{i}, 0.2]}}\n    axis: {axis}\n");
+        row += &format!(
+            "    link: {{mass: 1.{i}, com: [0.01, 0.02, 0.0{i}], inertia: {{xx: 0.02, yy: 0.03, zz: 0.025, xy: 0.001}}}}\n"
+        );
+        row += "    friction: {viscous: 0.3}\n    spring: {stiffness: 2, rest: 0.1}\n    armature: 0.01\n";
+        free += &row;
+        coupled += &row;
+        if i < 2 {
+            continue;
+        }
+        let leaders = [random.whole(0, i - 1), random.whole(0, i - 1)];
+        let leaders = if leaders[0] == leaders[1] { &leaders[..1] } else { &leaders[..] };
+        let (offset, mut constant) = OFFSETS[random.whole(0, 3) as usize];
+        let mut sum = [0.0; 2];
+        let mut text = Vec::new();
+        for &leader in leaders {
+            let (factor, by) = FACTORS[random.whole(0, 11) as usize];
+            text.push(format!("j{leader}: {factor}"));
+            (0..2).for_each(|a| sum[a] += by * rows[leader as usize][a]);
+            constant += by * offsets[leader as usize];
+        }
+        coupled += &format!("    follows: {{{}}}\n    offset: {offset}\n", text.join(", "));
+        rows.push(sum);
+        offsets.push(constant);
+    }
+    (coupled, free, rows, offsets)
+}
+
+/// q = S p + c of the free hand, multiplied by S' where there are forces, for factors of every kind.
+#[test]
+fn hands_with_factors_of_every_kind_are_free_hands_projected() {
+    let mut random = Random::new(11);
+    let mut computed = 0;
+    for draw in 0..12 {
+        let (text, free, rows, offsets) = hand(&mut random);
+        let (coupled, free) =
+            (Interpreted::new(&text).unwrap_or_else(|fault| panic!("{fault}\n{text}")), Interpreted::new(&free).expect("valid"));
+        computed += coupled.module.functions.iter().filter(|function| !function.computed.is_empty()).count();
+        let [p, dp, ddp, dpr, ddpr] = [(); 5].map(|()| [random.real(-1.0, 1.0), random.real(-1.0, 1.0)]);
+        let spread = |x: [f64; 2]| rows.iter().map(|row| row[0] * x[0] + row[1] * x[1]).collect::<Vec<f64>>();
+        let q: Vec<f64> = spread(p).iter().zip(&offsets).map(|(q, c)| q + c).collect();
+        let all = Arguments {
+            q: q.clone(),
+            dq: spread(dp),
+            ddq: spread(ddp),
+            dqr: spread(dpr),
+            ddqr: spread(ddpr),
+            ..Arguments::default()
+        };
+        let own = Arguments {
+            q: p.to_vec(),
+            dq: dp.to_vec(),
+            ddq: ddp.to_vec(),
+            dqr: dpr.to_vec(),
+            ddqr: ddpr.to_vec(),
+            ..Arguments::default()
+        };
+        // Along a dimension of six: S' of the entries.
+        let contract = |entries: &[f64], inner: usize| -> Vec<f64> {
+            let outer = entries.len() / (6 * inner);
+            let sum = |o: usize, a: usize, k: usize| (0..6).map(|j| rows[j][a] * entries[(o * 6 + j) * inner + k]).sum::<f64>();
+            let (rows, sum) = (0..outer, &sum);
+            rows.flat_map(|o| (0..2).flat_map(move |a| (0..inner).map(move |k| sum(o, a, k)))).collect()
+        };
+        let check = |function: &str, expected: &[f64]| {
+            let off = deviation(&coupled.call(function, &own), expected);
+            assert!(off < REFERENCE, "{draw} {function}: {off:e}\n{text}");
+        };
+        check("joint_variables", &q);
+        for function in ["gravity", "friction", "inverse_dynamics", "momentum"] {
+            check(function, &contract(&free.call(function, &all), 1));
+        }
+        for function in ["inertia_matrix", "coriolis_matrix", "inverse_dynamics_derivatives"] {
+            check(function, &contract(&contract(&free.call(function, &all), 6), 1));
+        }
+        for function in ["geometric_jacobian", "geometric_jacobian_dot", "link_jacobians"] {
+            check(function, &contract(&free.call(function, &all), 1));
+        }
+        for function in ["direct_kinematics", "link_frames", "kinetic_energy", "potential_energy", "center_of_mass"] {
+            check(function, &free.call(function, &all));
+        }
+        let tau = coupled.call("inverse_dynamics", &own);
+        let forwards = Arguments { tau, ..own.clone() };
+        let off = deviation(&coupled.call("forward_dynamics", &forwards), &ddp);
+        assert!(off < 1e3 * REFERENCE, "{draw}: {off:e}");
+    }
+    assert!(computed > 100, "{computed} functions compute angles");
+}
+
+/// Angles of one unit: their base parameters are fewer than with independent angles, which the checker proves, none of them being redundant.
+#[test]
+fn the_checker_proves_base_parameters_of_related_angles() {
+    let joint = |i: usize, more: &str| {
+        format!("  - name: j{i}\n    type: revolute\n    origin: {{xyz: [0.{i}, 0, 0]}}\n    axis: [0, 0, 1]\n    link: {{mass: 1.{i}, com: [0.1, 0.0{i}, 0], inertia: {{xx: 0.1, yy: 0.2, zz: 0.25}}}}\n{more}")
+    };
+    let text = |factors: [&str; 2]| {
+        let follows = factors.map(|factor| format!("    follows: {{j1: {factor}}}\n"));
+        let joints = [joint(1, ""), joint(2, &follows[0]), joint(3, &follows[1])].concat();
+        format!("name: bars\nconvention: urdf\ngravity: [0, -9.81, 0]\nregressor: base\njoints:\n{joints}")
+    };
+    let mut counts = Vec::new();
+    for factors in [["1/3", "-1/3"], ["1/2", "-3/2"], ["0.785", "1.1232"], ["0.333333333333333333", "0.785"]] {
+        let (source, generated) = generated(&text(factors));
+        let report = judged(&source, &generated, Language::Rust, &generated.module);
+        assert!(report.passed(), "{factors:?}: {}", report.first_fault().unwrap_or_default());
+        let (arm, _) = validate::read(&source).0.expect("valid");
+        let model = Model::new(arm);
+        counts.push(base::base_combinations(&model.manipulator, &model.field).0.entries.len());
+    }
+    // With 1/2 and -3/2 the last bar keeps its direction. Seven of independent angles.
+    assert_eq!(counts, [7, 5, 7, 7]);
 }
 
 /// With base parameters at run time, and with gravity as an argument.
@@ -231,8 +422,13 @@ fn hostile_couplings_get_an_answer() {
     assert!(!codes(&long).is_empty());
     let roots = line(32, |i| if i == 0 { String::new() } else { follows(i - 1, "sqrt(2) + sqrt(3) + pi") });
     assert_eq!(codes(&roots), ["too-complex"]);
-    let turning = after("2").replace("prismatic", "revolute");
-    assert!(codes(&turning).iter().all(|code| code == "fractional-factor"), "{:?}", codes(&turning));
+    let turning = |factor| codes(&after(factor).replace("prismatic", "revolute"));
+    // Point masses on the axes: some joints move no inertia.
+    for factor in ["2", "2/3", "0.785", "sqrt(2)", "1/7", &digits] {
+        let codes =
+            codes(&line(32, |i| if i == 0 { String::new() } else { follows(i - 1, factor) }).replace("prismatic", "revolute"));
+        assert!(codes.iter().all(|code| ["too-complex", "too-large", "singular-inertia"].contains(&code.as_str())), "{codes:?}");
+    }
     assert!(codes(&after("1e300")).contains(&"too-complex".to_owned()));
 }
 

@@ -26,6 +26,18 @@ const COUPLING: [(&str, [f64; 2], f64); 5] = [
     ("left", [0.0, 1.0], 0.0),
 ];
 
+/// The same with multipliers of followers that are no whole numbers, of which one slides.
+const FRACTIONS: [&str; 5] = [
+    "",
+    "<mimic joint='wrist' multiplier='-0.785' offset='0.3'/>",
+    "<mimic joint='left' multiplier='12.5' offset='0.1'/>",
+    "<mimic joint='bar' multiplier='0.02'/>",
+    "",
+];
+const BY_FRACTIONS: Coupling =
+    [([1.0, 0.0], 0.0), ([-0.785, 0.0], 0.3), ([0.0, 12.5], 0.1), ([-0.0157, 0.0], 0.006), ([0.0, 1.0], 0.0)];
+type Coupling = [([f64; 2], f64); 5];
+
 fn file(angle: &str) -> String {
     let joints = FILE.iter().enumerate().map(|(k, (name, kind, parent, mimic))| {
         let (mass, at) = (1.0 + 0.3 * k as f64, 0.05 * (k + 1) as f64);
@@ -56,30 +68,40 @@ fn random(random: &mut Random, count: usize) -> Vec<f64> {
 }
 
 /// S p.
-fn led(p: &[f64]) -> Vec<f64> {
-    COUPLING.iter().map(|(_, row, _)| row[0] * p[0] + row[1] * p[1]).collect()
+fn led(by: &Coupling, p: &[f64]) -> Vec<f64> {
+    by.iter().map(|(row, _)| row[0] * p[0] + row[1] * p[1]).collect()
 }
 
 /// S' f.
-fn projected(forces: &[f64]) -> Vec<f64> {
-    (0..2).map(|a| COUPLING.iter().zip(forces).map(|((_, row, _), force)| row[a] * force).sum()).collect()
+fn projected(by: &Coupling, forces: &[f64]) -> Vec<f64> {
+    (0..2).map(|a| by.iter().zip(forces).map(|((row, _), force)| row[a] * force).sum()).collect()
 }
 
 /// S' M S.
-fn projected_matrix(matrix: &[f64]) -> Vec<f64> {
+fn projected_matrix(by: &Coupling, matrix: &[f64]) -> Vec<f64> {
     let columns = [[1.0, 0.0], [0.0, 1.0]].map(|p| {
-        let column: Vec<f64> = matrix.chunks(5).map(|row| row.iter().zip(led(&p)).map(|(m, s)| m * s).sum()).collect();
-        projected(&column)
+        let column: Vec<f64> = matrix.chunks(5).map(|row| row.iter().zip(led(by, &p)).map(|(m, s)| m * s).sum()).collect();
+        projected(by, &column)
     });
     vec![columns[0][0], columns[1][0], columns[0][1], columns[1][1]]
 }
 
 #[test]
 fn equations_are_those_of_the_free_file_projected() {
-    let text = file("1.5708");
-    let coupled = imported(&text, Options::SNAP).yaml;
-    let mut without = text.clone();
-    FILE.iter().for_each(|(.., mimic)| without = without.replace(mimic, ""));
+    let whole = file("1.5708");
+    check(&whole, &COUPLING.map(|(_, row, offset)| (row, offset)));
+    let mut fractions = whole;
+    for ((.., mimic), by) in FILE.iter().zip(FRACTIONS).filter(|((.., mimic), _)| !mimic.is_empty()) {
+        fractions = fractions.replace(mimic, by);
+    }
+    check(&fractions, &BY_FRACTIONS);
+}
+
+#[track_caller]
+fn check(text: &str, by: &Coupling) {
+    let coupled = imported(text, Options::SNAP).yaml;
+    let mut without = text.to_owned();
+    FILE.iter().map(|(.., mimic)| *mimic).chain(FRACTIONS).for_each(|mimic| without = without.replace(mimic, ""));
     let free = imported(&without, Options::SNAP).yaml;
     let names = COUPLING.map(|(name, ..)| format!("  - name: {name}  # joint"));
     for yaml in [&coupled, &free] {
@@ -90,15 +112,15 @@ fn equations_are_those_of_the_free_file_projected() {
     let mut numbers = Random::new(3);
     for _ in 0..10 {
         let [p, dp, ddp] = [(); 3].map(|()| random(&mut numbers, 2));
-        let q = led(&p).iter().zip(COUPLING).map(|(q, (.., offset))| q + offset).collect();
-        let all = Arguments { q, dq: led(&dp), ddq: led(&ddp), ..Arguments::default() };
+        let q = led(by, &p).iter().zip(by).map(|(q, (_, offset))| q + offset).collect();
+        let all = Arguments { q, dq: led(by, &dp), ddq: led(by, &ddp), ..Arguments::default() };
         let own = Arguments { q: p, dq: dp, ddq: ddp, ..Arguments::default() };
         for function in ["gravity", "friction", "inverse_dynamics"] {
-            let off = deviation(&coupled.call(function, &own), &projected(&free.call(function, &all)));
+            let off = deviation(&coupled.call(function, &own), &projected(by, &free.call(function, &all)));
             assert!(off < REFERENCE, "{function}: {off:e}");
         }
         for function in ["inertia_matrix", "coriolis_matrix"] {
-            let off = deviation(&coupled.call(function, &own), &projected_matrix(&free.call(function, &all)));
+            let off = deviation(&coupled.call(function, &own), &projected_matrix(by, &free.call(function, &all)));
             assert!(off < REFERENCE, "{function}: {off:e}");
         }
     }

@@ -8,6 +8,7 @@ use crate::bounds;
 use crate::checker::Checker;
 use crate::contract::Promise;
 use crate::enclosure::Float;
+use crate::equations::angles::Angles;
 use crate::equations::state::State;
 use crate::float::Arguments;
 use crate::formula::Formula;
@@ -71,12 +72,15 @@ pub(crate) fn say(functions: &mut [FunctionReport], module: &Module, checker: &C
 
 fn state(arguments: &Arguments<f64>, manipulator: &Manipulator) -> State<f64> {
     let sign = |rate: &f64| if *rate == 0.0 { 0.0 } else { rate.signum() };
-    let angles = arguments.q.iter().map(|q| q.sin_cos()).collect();
+    let of_arm = Angles::of(manipulator);
+    let values = of_arm.values(&Floats, &arguments.q).unwrap_or_default();
+    let angles = arguments.q.iter().chain(&values).map(|q| q.sin_cos()).collect();
+    let computed = of_arm.factors(&Floats).unwrap_or_default();
     let fading = |(rate, of): (&f64, Coordinate<'_>)| {
         of.joint.decay_velocity().map_or(0.0, |velocity| libm::exp(-rate.abs() / velocity.to_f64()))
     };
     let stribeck = arguments.dq.iter().zip(manipulator.coordinates()).map(fading).collect();
-    State { stribeck, ..State::of(arguments.clone(), angles, arguments.dq.iter().map(sign).collect(), [0.0, 1.0]) }
+    State { stribeck, computed, ..State::of(arguments.clone(), angles, arguments.dq.iter().map(sign).collect(), [0.0, 1.0]) }
 }
 
 /// The arguments of a function in readable form; parameters have the values of the description.

@@ -28,6 +28,7 @@ use armgen_description::manipulator::Manipulator;
 use crate::arithmetic::degree::Degree;
 use crate::arithmetic::Arithmetic;
 use crate::element::Element;
+use crate::equations::angles::Angles;
 use crate::equations::arm::Arm;
 use crate::equations::lagrange::{friction, spring_torques};
 use crate::equations::newton_euler::{ArmMotion, Carrier, Motion};
@@ -187,7 +188,7 @@ impl<E: Element> Samples<E> {
         let under = |state: State<E>| sample(&arm.clone().under(&state.g0), state, named);
         let mut samples = vec![under(reference.state.clone())];
         for _ in 0..more {
-            let state = State::draw(arithmetic, arm.dof()).with_decays(arithmetic, arm.decays());
+            let state = State::draw(arithmetic, &arm.angles).with_decays(arithmetic, arm.decays());
             samples.push(under(arm.with_friction(state).with_gravity(arithmetic, manipulator.gravity_is_argument)));
         }
         Some(Samples(samples))
@@ -367,7 +368,7 @@ pub fn dependent_column<K: Arithmetic>(
     mut arithmetic: K,
     program: &Program,
     literals: &[K::Element],
-    n: usize,
+    angles: &Angles,
     columns: usize,
 ) -> Option<Fault> {
     let mut echelon = Echelon::default();
@@ -376,8 +377,9 @@ pub fn dependent_column<K: Arithmetic>(
         if echelon.0.len() == columns {
             return None;
         }
-        let decays = (0..n).map(|i| program.steps.iter().any(|step| matches!(step, Step::Stribeck(joint, _) if *joint == i)));
-        let state = State::draw(&mut arithmetic, n).with_decays(&mut arithmetic, decays);
+        let decays = (0..angles.coordinates())
+            .map(|i| program.steps.iter().any(|step| matches!(step, Step::Stribeck(joint, _) if *joint == i)));
+        let state = State::draw(&mut arithmetic, angles).with_decays(&mut arithmetic, decays);
         let state = state.with_gravity(&mut arithmetic, program.arguments.contains(&Argument::Gravity));
         let Some(entries) = program.run(&state, literals).into_iter().collect::<Option<Vec<_>>>() else { continue };
         entries.chunks(columns).for_each(|row| echelon.add(row.to_vec(), columns));

@@ -18,6 +18,7 @@ use crate::contract::{Promise, Sizes};
 use crate::divisors::{is_needed, needed};
 use crate::element::Element;
 use crate::enclosure::Float;
+use crate::equations::angles::Angles;
 use crate::equations::arm::{formula, Arm};
 use crate::equations::parameters::Vector;
 use crate::equations::state::State;
@@ -318,8 +319,8 @@ impl Checker {
             fields.push(Drawn::Modular(field.ok_or("the constants have too many square roots for a prime field")?));
         }
         let joints = manipulator.joints.len();
-        fields
-            .extend((0..effort.exact_points).map_while(|_| Tower::new(&mut stream, atoms, dependent, joints)).map(Drawn::Exact));
+        let exact_points = if Angles::of(&manipulator).have_rational_points() { effort.exact_points } else { 0 };
+        fields.extend((0..exact_points).map_while(|_| Tower::new(&mut stream, atoms, dependent, joints)).map(Drawn::Exact));
         let modular = |mut field: Prime| {
             let wanted = Wanted { base: BaseParameters::Solved, pivots: divides };
             let reference = Reference::new(&mut field, &manipulator, &vector, wanted)?;
@@ -520,7 +521,7 @@ impl Checker {
         let dependent = || {
             let point = self.points.first()?;
             let literals = point.literals_of(program, literals)?;
-            dependent_column(point.arithmetic.clone(), program, &literals, self.manipulator.dof(), base.named.len())
+            dependent_column(point.arithmetic.clone(), program, &literals, &Angles::of(&self.manipulator), base.named.len())
         };
         let modular = modular.filter(|_| Check::Modular.is_made());
         let exact = || exact().filter(|_| Check::Rational.is_made());
@@ -612,7 +613,7 @@ impl Odds {
             let nominal = own.nominal.iter().map(|value| degrees.constant(value)).collect::<Option<Vec<_>>>()?;
             Some((samples.map(&Degree::of), own.clone(), nominal))
         });
-        let circles = manipulator.dof() + constants.atoms.angles.len();
+        let circles = Angles::of(manipulator).circles() + constants.atoms.angles.len();
         let state = reference.state.map(&Degree::of);
         let of_entries = |(name, entries): (String, Vec<Number>)| (name, entries.into_iter().map(Degree::of).collect());
         let values = reference.values.into_iter().map(of_entries).collect();

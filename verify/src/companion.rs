@@ -146,7 +146,7 @@ enum Row {
 /// A sum of joint variables, each with its factor, and a constant with what its literal is off by; 0 where there is none.
 #[derive(Clone, Debug, PartialEq)]
 struct Sum {
-    terms: Vec<(usize, i64)>,
+    terms: Vec<(usize, f64)>,
     turn: f64,
     off: f64,
 }
@@ -172,7 +172,15 @@ impl Table {
         let mut number_of = |angle: &Angle| {
             let constant = angle.turn.map(|(k, minus)| (program.turns[k], minus));
             let turn = constant.map_or(0.0, |(l, minus)| program.literals[l].value * if minus { -1.0 } else { 1.0 });
-            let sum = Sum { terms: angle.terms.clone(), turn, off: constant.map_or(0.0, |(l, _)| errors[l]) };
+            let factor = |i: usize| angle.factors.get(i).copied().flatten();
+            let scale = |i: usize| factor(i).map_or(1.0, |literal| program.literals[literal].value);
+            let mut terms: Vec<(usize, f64)> =
+                angle.terms.iter().enumerate().map(|(i, &(joint, sign))| (joint, sign as f64 * scale(i))).collect();
+            // A term of factor 0 counts one rounding more of all: that of factors to their literals.
+            if (0..terms.len()).any(|i| factor(i).is_some_and(|literal| errors[literal] != 0.0)) {
+                terms.push((terms[0].0, 0.0));
+            }
+            let sum = Sum { terms, turn, off: constant.map_or(0.0, |(l, _)| errors[l]) };
             let index = angles.iter().position(|known| *known == sum).unwrap_or_else(|| {
                 angles.push(sum);
                 angles.len() - 1
@@ -382,7 +390,8 @@ fn write_function(text: &mut String, program: &Program, table: &Table, promise: 
     let given: Vec<&str> = program.arguments.iter().map(|a| a.name()).collect();
     let sizes = module.sizes().of_function(&program.name);
     let angle = |sum: &Sum| {
-        let terms: Vec<String> = sum.terms.iter().map(|(joint, factor)| format!("({joint}, {factor}.0)")).collect();
+        let terms: Vec<String> =
+            sum.terms.iter().map(|(joint, factor)| format!("({joint}, {})", number(*factor, module.real))).collect();
         let [turn, off] = [sum.turn, sum.off].map(|value| number(value, module.real));
         format!("Angle {{ terms: &[{}], turn: {turn}, off: {off} }}", terms.join(", "))
     };

@@ -13,12 +13,25 @@ use crate::checker::Checker;
 use crate::claims::Claims;
 use crate::element::Element;
 use crate::enclosure::Float;
+use crate::equations::angles::Angles;
 use crate::equations::arm::{formula, Arm};
 use crate::equations::parameters::{self, Standard, Vector};
 use crate::formula::Formula;
 use crate::program::{Literal, JOINTS, MOTORS, NOMINAL_GRAVITY, TIPS};
 use crate::reader::{Constant, Module};
 use crate::report::{ConstantReport, Exact, Verdict};
+
+/// Tells which angles of the description the functions of a module compute. A function that takes the sine of another sum is refused.
+pub fn name_angles(module: &mut Module, manipulator: &Manipulator, claims: &Claims) {
+    let (angles, real) = (Angles::of(manipulator), module.real);
+    for (name, function) in &mut module.functions {
+        let Ok(found) = function else { continue };
+        let values = claims.resolve(name, &found.program.literals, real).values.clone();
+        if let Err(why) = angles.name(&mut found.program, &values) {
+            *function = Err(why);
+        }
+    }
+}
 
 /// The expected value of a constant.
 enum Expected {

@@ -2,6 +2,7 @@
 //!
 //! | quantity | how | file |
 //! |---|---|---|
+//! | angles that functions compute | units of coordinates | [`angles`] |
 //! | frames, J | products of placements; z × (p_e - p_j) | [`pose`] |
 //! | B | Σ m J_P'J_P + J_O' R I R' J_O over links, load, rotors and their masses (the book, eq. 7.32) | [`lagrange`] |
 //! | C | Christoffel symbols from ∂B/∂q by dual numbers (eq. 7.45) | [`lagrange`] |
@@ -12,6 +13,7 @@
 //! The generator shares only the reading of the description into a
 //! [`Manipulator`](armgen_description::manipulator::Manipulator): its numbers arrive as text.
 
+pub mod angles;
 pub mod arm;
 pub mod lagrange;
 pub mod newton_euler;

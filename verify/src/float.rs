@@ -2,7 +2,7 @@
 
 use crate::element::Element;
 use crate::enclosure::Float;
-use crate::program::{Argument, Inputs, Program, Turn};
+use crate::program::{Argument, Inputs, Program, Scaled, Turn};
 
 /// Number of states that run in parallel lanes.
 pub const LANES: usize = 8;
@@ -129,6 +129,11 @@ macro_rules! inputs {
                 $sincos(if turn.minus { sum - turn.value } else { sum + turn.value })
             }
 
+            fn scaled(&self, terms: &[Scaled<$float>], constant: Option<$float>) -> ($float, $float) {
+                let term = |&(joint, sign, factor): &Scaled<$float>| sign as $float * (factor.unwrap_or(1.0) * self.q[joint]);
+                $sincos(terms.iter().map(term).chain(constant).reduce(|sum, term| sum + term).unwrap_or(0.0))
+            }
+
             fn sign(&self, joint: usize) -> $float {
                 let x = self.dq[joint];
                 if x > 0.0 {
@@ -219,6 +224,14 @@ impl Inputs<Lanes> for [Arguments<f64>; LANES] {
         let all: [(f64, f64); LANES] = std::array::from_fn(|lane| {
             let turn = Turn { minus: turn.minus, value: &turn.value.0[lane], circle: None };
             self[lane].turned(angle, &turn)
+        });
+        (Lanes(all.map(|(sine, _)| sine)), Lanes(all.map(|(_, cosine)| cosine)))
+    }
+
+    fn scaled(&self, terms: &[Scaled<Lanes>], constant: Option<Lanes>) -> (Lanes, Lanes) {
+        let all: [(f64, f64); LANES] = std::array::from_fn(|lane| {
+            let terms: Vec<Scaled<f64>> = terms.iter().map(|(i, sign, factor)| (*i, *sign, factor.map(|x| x.0[lane]))).collect();
+            self[lane].scaled(&terms, constant.map(|x| x.0[lane]))
         });
         (Lanes(all.map(|(sine, _)| sine)), Lanes(all.map(|(_, cosine)| cosine)))
     }

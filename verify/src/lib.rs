@@ -136,7 +136,7 @@ pub fn prepare<'a>(
     claims: Claims,
     effort: Effort,
 ) -> Result<Prepared, String> {
-    let module = Module::read(text)?;
+    let mut module = Module::read(text)?;
     if let Some(Constant::Text(name)) = module.constants.get("NAME") {
         if *name != manipulator.name && Check::Robot.is_made() {
             return Err(format!("NAME: the module is of the robot `{name}`, the description of `{}`", manipulator.name));
@@ -167,6 +167,7 @@ pub fn prepare<'a>(
     }
     let vector = Vector::of(&manipulator, &constants::parameter_names(&module))?;
     let claims = claims.used(&module, &constants::claimed_constants(&vector, &module));
+    constants::name_angles(&mut module, &manipulator, &claims);
     let base = constants::base_parameters(&manipulator, &claims, &module);
     let checker = Checker::new(manipulator, vector, claims, effort, &module, base)?;
     Ok(Prepared { module, checker })

@@ -14,6 +14,7 @@ use crate::arithmetic::Arithmetic;
 use crate::base::{self, OwnParameters};
 use crate::element::Element;
 use crate::enclosure::Float;
+use crate::equations::angles::Angles;
 use crate::equations::arm::formula;
 use crate::equations::parameters::Vector;
 use crate::equations::state::State;
@@ -76,7 +77,12 @@ impl Plain<'_> {
             (wave(both.map(|(sine, _)| sine)), wave(both.map(|(_, cosine)| cosine)))
         };
         let sign = |rate: &Running| Running::exact(rate.value.map(|x| if x == 0.0 { 0.0 } else { x.signum() }));
-        let (angles, signs) = (arguments.q.iter().map(circle).collect(), arguments.dq.iter().map(sign).collect());
+        let (mut angles, signs): (Vec<_>, _) =
+            (arguments.q.iter().map(circle).collect(), arguments.dq.iter().map(sign).collect());
+        let of_arm = Angles::of(self.manipulator);
+        let numbers = RunningNumbers::default();
+        angles.extend(of_arm.values(&numbers, &arguments.q).unwrap_or_default().iter().map(circle));
+        let computed = of_arm.factors(&numbers).unwrap_or_default();
         let stribeck = arguments.dq.iter().zip(self.decay_velocities()).map(|(rate, velocity)| {
             let both = rate.value.map(|rate| match velocity {
                 Some(velocity) => {
@@ -88,7 +94,8 @@ impl Plain<'_> {
             Running { value: both.map(|(value, _)| value), error: both.map(|(_, error)| error) }
         });
         let stribeck = stribeck.collect();
-        let mut state = State { stribeck, ..State::of(arguments, angles, signs, [0.0, 1.0].map(|x| Running::exact([x; LANES]))) };
+        let plain = State::of(arguments, angles, signs, [0.0, 1.0].map(|x| Running::exact([x; LANES])));
+        let mut state = State { stribeck, computed, ..plain };
         let mut numbers = RunningNumbers::default();
         if self.is_base() {
             numbers.given = std::mem::take(&mut state.pi).into();
@@ -107,15 +114,21 @@ impl Plain<'_> {
         let range = |(low, high): (f64, f64)| Range { low, high, error: unit * low.abs().max(high.abs()) };
         let arguments = domain.map(range);
         let circle = |q: &Range| Range { low: -1.0, high: 1.0, error: 2.0 * unit + q.error };
-        let angles = arguments.q.iter().map(|q| (circle(q), circle(q))).collect();
+        let of_arm = Angles::of(self.manipulator);
+        let values = of_arm.values(&Ranges::default(), &arguments.q).unwrap_or_default();
+        let angles = arguments.q.iter().chain(&values).map(|q| (circle(q), circle(q))).collect();
+        let computed = of_arm.factors(&Ranges::default()).unwrap_or_default();
         let signs = vec![Range { low: -1.0, high: 1.0, error: 0.0 }; arguments.q.len()];
         let stribeck = arguments.dq.iter().zip(self.decay_velocities());
         let stribeck = stribeck.map(|(rate, velocity)| {
             velocity.map_or(range((0.0, 0.0)), |velocity| Range::stribeck((rate.low, rate.high), velocity, Float::F64))
         });
         let stribeck = stribeck.collect();
-        let mut state =
-            State { stribeck, ..State::of(arguments, angles, signs, [0.0, 1.0].map(|x| Range { low: x, high: x, error: 0.0 })) };
+        let mut state = State {
+            stribeck,
+            computed,
+            ..State::of(arguments, angles, signs, [0.0, 1.0].map(|x| Range { low: x, high: x, error: 0.0 }))
+        };
         let mut numbers = Ranges::default();
         if self.is_base() {
             numbers.given = std::mem::take(&mut state.pi).into_iter();

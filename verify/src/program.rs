@@ -117,13 +117,50 @@ impl Step {
     }
 }
 
-/// An integer combination of joint variables, plus or minus a constant.
+/// A sum of joint variables, perhaps times literals, plus or minus a constant.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Angle {
     /// Joints with their factors.
     pub terms: Vec<(usize, i64)>,
     /// The index of the constant among the [`turns`](Program::turns) of the function, and whether it is subtracted.
     pub turn: Option<(usize, bool)>,
+    /// The literals that the terms are multiplied by, if any are.
+    pub factors: Vec<Option<usize>>,
+    /// Which of the description's computed angles it is ([`Angles`](crate::equations::angles::Angles)).
+    pub computed: Option<usize>,
+}
+
+impl Angle {
+    /// The same with joints by number, as programs store them, and without factors where there are none.
+    #[must_use]
+    pub fn sorted(self) -> Angle {
+        let factors = self.factors.into_iter().chain(std::iter::repeat(None));
+        let mut terms: Vec<_> = self.terms.into_iter().zip(factors).collect();
+        terms.sort_unstable();
+        let (terms, mut factors): (Vec<_>, Vec<Option<usize>>) = terms.into_iter().unzip();
+        if factors.iter().all(Option::is_none) {
+            factors.clear();
+        }
+        Angle { terms, factors, turn: self.turn, computed: self.computed }
+    }
+
+    /// Its terms with the factors that literals of these values give.
+    pub fn scaled<E: Clone>(&self, literals: &[E]) -> Vec<Scaled<E>> {
+        let factor = |i: usize| Some(literals[self.factors.get(i).copied().flatten()?].clone());
+        self.terms.iter().enumerate().map(|(i, &(joint, sign))| (joint, sign, factor(i))).collect()
+    }
+
+    /// Its constant, with its sign.
+    pub fn constant<E: Element>(&self, turns: &[usize], literals: &[E]) -> Option<E> {
+        self.turn.map(|(k, minus)| {
+            let size = literals[turns[k]].clone();
+            if minus {
+                size.negated()
+            } else {
+                size
+            }
+        })
+    }
 }
 
 /// A literal in the text: digits without a sign.
@@ -167,6 +204,9 @@ impl fmt::Display for Output {
     }
 }
 
+/// A joint, the sign of its term, and the factor of that; `None` is 1.
+pub type Scaled<E> = (usize, i64, Option<E>);
+
 /// Values of the inputs of a program.
 pub trait Inputs<E> {
     /// An entry of an argument.
@@ -179,6 +219,12 @@ pub trait Inputs<E> {
     fn stribeck(&self, joint: usize, velocity: &E) -> E;
     /// Sine and cosine of an integer combination plus a constant.
     fn turned(&self, angle: &[(usize, i64)], turn: &Turn<'_, E>) -> (E, E);
+    /// Sine and cosine of a sum of joint variables times factors, and a constant with a sign.
+    fn scaled(&self, terms: &[Scaled<E>], constant: Option<E>) -> (E, E);
+    /// Sine and cosine of a computed angle of the description, where these are inputs.
+    fn computed(&self, _: usize) -> Option<(E, E)> {
+        None
+    }
 }
 
 /// The constant of an angle.
@@ -366,14 +412,17 @@ impl Program {
             }
             let of = |i: &usize| values[*i].as_ref();
             let both = |a: &usize, b: &usize| Some((values[*a].as_ref()?, values[*b].as_ref()?));
-            let wave = |angle: &Angle| match angle.turn {
-                None => inputs.sine_cosine(&angle.terms),
-                Some((k, minus)) => {
-                    let at = self.literals.len() + 2 * k;
-                    let turn =
-                        Turn { minus, value: &literals[self.turns[k]], circle: literals.get(at).zip(literals.get(at + 1)) };
-                    inputs.turned(&angle.terms, &turn)
+            let wave = |angle: &Angle| {
+                if let Some(circle) = angle.computed.and_then(|k| inputs.computed(k)) {
+                    return circle;
                 }
+                if !angle.factors.is_empty() {
+                    return inputs.scaled(&angle.scaled(literals), angle.constant(&self.turns, literals));
+                }
+                let Some((k, minus)) = angle.turn else { return inputs.sine_cosine(&angle.terms) };
+                let at = self.literals.len() + 2 * k;
+                let turn = Turn { minus, value: &literals[self.turns[k]], circle: literals.get(at).zip(literals.get(at + 1)) };
+                inputs.turned(&angle.terms, &turn)
             };
             let value = match step {
                 Step::Input(argument, index) => Some(inputs.entry(*argument, *index)),
@@ -427,7 +476,9 @@ impl Program {
                 Step::Add(a, b) | Step::Subtract(a, b) | Step::Multiply(a, b) | Step::Product(a, b) | Step::Divide(a, b) => {
                     touched[*a] || touched[*b]
                 }
-                Step::Sine(angle) | Step::Cosine(angle) => angle.turn.is_some_and(|(k, _)| self.turns[k] == literal),
+                Step::Sine(angle) | Step::Cosine(angle) => {
+                    angle.turn.is_some_and(|(k, _)| self.turns[k] == literal) || angle.factors.contains(&Some(literal))
+                }
                 Step::Input(..) | Step::Sign(_) => false,
             };
         }

@@ -152,19 +152,24 @@ impl Evaluation<'_> {
     /// The sine of an angle plus `shift`, including the rounding of the angle's sum.
     fn sine(&self, angle: &Angle, shift: f64) -> Range {
         let (u, terms, q) = (self.real.unit(), &angle.terms, &self.domain.q);
+        let value = |literal: usize| self.program.literals[literal].value;
         let (mut low, mut high) = (0.0, 0.0);
-        for &(joint, factor) in terms {
-            let (a, b) = (q[joint].0 * factor as f64, q[joint].1 * factor as f64);
+        let scale = |i: usize| terms[i].1 as f64 * angle.factors.get(i).copied().flatten().map_or(1.0, value);
+        for (i, &(joint, _)) in terms.iter().enumerate() {
+            let (a, b) = (q[joint].0 * scale(i), q[joint].1 * scale(i));
             (low, high) = (low + a.min(b), high + a.max(b));
         }
         let literal = angle.turn.map(|(k, minus)| (self.program.turns[k], minus));
-        let value = |literal: usize| self.program.literals[literal].value;
         let turn = literal.map_or(0.0, |(literal, minus)| value(literal) * if minus { -1.0 } else { 1.0 });
         (low, high) = (low + turn, high + turn);
         let parts = terms.len() + usize::from(literal.is_some());
-        let slack = if parts > 1 || terms.iter().any(|(_, k)| k.abs() != 1) {
-            let size = |&(joint, factor): &(usize, i64)| q[joint].0.abs().max(q[joint].1.abs()) * factor.abs() as f64;
-            parts as f64 * u * (terms.iter().map(size).sum::<f64>() + turn.abs()) + literal.map_or(0.0, |(l, _)| self.errors[l])
+        let slack = if parts > 1 || (0..terms.len()).any(|i| scale(i).abs() != 1.0) {
+            let largest = |i: usize| q[terms[i].0].0.abs().max(q[terms[i].0].1.abs());
+            let sizes = (0..terms.len()).map(|i| largest(i) * scale(i).abs()).sum::<f64>();
+            // What factors are off by.
+            let off = |(i, factor): (usize, &Option<usize>)| largest(i) * factor.map_or(0.0, |literal| self.errors[literal]);
+            let off = angle.factors.iter().enumerate().map(off).sum::<f64>();
+            parts as f64 * u * (sizes + turn.abs()) + off + literal.map_or(0.0, |(l, _)| self.errors[l])
         } else {
             0.0
         };

@@ -9,6 +9,7 @@ use crate::arithmetic::Arithmetic;
 use crate::contract::{Array, Length, Promise, Returned};
 use crate::divisors::{Matrix, Pivots};
 use crate::element::Element;
+use crate::equations::angles::Angles;
 use crate::equations::arm::{Arm, Frame, Tip};
 use crate::equations::lagrange::{
     accelerations, along_joints, coriolis_matrix, friction, gravity, has_load_friction, inertia_derivatives, inertia_matrix,
@@ -364,7 +365,7 @@ impl<E: Element> Reference<E> {
         wanted: Wanted,
     ) -> Result<Reference<E>, String> {
         let decays = manipulator.coordinates().into_iter().map(|of| of.joint.decay_velocity().is_some());
-        let state = State::draw(arithmetic, manipulator.dof()).with_decays(arithmetic, decays);
+        let state = State::draw(arithmetic, &Angles::of(manipulator)).with_decays(arithmetic, decays);
         let state = state.with_gravity(arithmetic, manipulator.gravity_is_argument);
         Reference::at(arithmetic, manipulator, vector, state, wanted)
     }
@@ -386,7 +387,7 @@ impl<E: Element> Reference<E> {
         if manipulator.is_massless() {
             // Without accelerations, only the equations of kinematics apply.
             let none = || Pivots::of(Vec::new(), Vec::new());
-            let pivots = wanted.pivots.then(|| (none(), State::draw(arithmetic, n), none()));
+            let pivots = wanted.pivots.then(|| (none(), State::draw(arithmetic, &arm.angles), none()));
             return Ok(Reference { state, values, elsewhere: None, nominal: None, two_derivations_agree: true, pivots });
         }
         let mut agree = quantities(&arm, &state, &mut values, "").ok_or_else(singular)?;
@@ -409,7 +410,7 @@ impl<E: Element> Reference<E> {
         }
         let pivots = wanted.pivots.then(|| {
             let (other, pi) = other.unzip();
-            let drawn = State::draw(arithmetic, n).with_gravity(arithmetic, manipulator.gravity_is_argument);
+            let drawn = State::draw(arithmetic, &arm.angles).with_gravity(arithmetic, manipulator.gravity_is_argument);
             let there = State { pi: pi.unwrap_or_default(), ..drawn };
             let at = |run_time: Option<&Arm<E>>, state: &State<E>| pivots(&arm, run_time, state);
             (at(run_time.as_ref(), &state), there.clone(), at(other.as_ref(), &there))
@@ -521,7 +522,7 @@ fn of_base<E: Element, K: Arithmetic<Element = E>>(
     }
     // Needs the potential energy at another configuration, once the parameters are known.
     let elsewhere = |arithmetic: &mut K, state: &State<E>, energy: &dyn Fn(&State<E>) -> E| {
-        let mut there = State::draw(arithmetic, arm.dof());
+        let mut there = State::draw(arithmetic, &arm.angles);
         there.pi.clone_from(&state.pi);
         // The constant of the energy is one for each gravity.
         there.g0.clone_from(&state.g0);

@@ -103,6 +103,10 @@ fn of_program(program: &Program, resolved: &Resolved) -> Hash {
                 parts.integer(joint as u64);
                 parts.add(&factor.to_le_bytes());
             }
+            for (i, literal) in angle.factors.iter().enumerate().filter_map(|(i, literal)| Some((i, (*literal)?))) {
+                parts.integer(i as u64);
+                parts.add(&literals[literal]);
+            }
             if let Some((turn, minus)) = angle.turn {
                 parts.add(&literals[program.turns[turn]]);
                 parts.integer(u64::from(minus));

@@ -11,11 +11,12 @@ use std::fmt::Write;
 use armgen_description::manipulator::{Joint, Manipulator};
 use armgen_description::{language::Language, origin::Origin};
 
-use crate::arithmetic::wide::{Wide, WideArguments};
+use crate::arithmetic::wide::{wide_circle, Wide, WideArguments};
 use crate::arithmetic::Arithmetic;
 use crate::base;
 use crate::contract::{Promise, Sizes};
 use crate::enclosure::Float;
+use crate::equations::angles::Angles;
 use crate::equations::arm::formula;
 use crate::equations::parameters::Vector;
 use crate::equations::state::State;
@@ -70,14 +71,18 @@ fn arguments(stream: &mut Stream, sizes: &Sizes) -> Arguments<f64> {
 fn wide_state(arguments: &Arguments<f64>, manipulator: &Manipulator) -> Option<State<Wide>> {
     let inputs = WideArguments::new(arguments)?;
     let joints = 0..arguments.q.len();
-    let angles = joints.clone().map(|i| inputs.sine_cosine(&[(i, 1)])).collect();
+    let mut angles: Vec<_> = joints.clone().map(|i| inputs.sine_cosine(&[(i, 1)])).collect();
+    let (of_arm, fine) = (Angles::of(manipulator), Fine(Stream::new(0)));
+    let values = of_arm.values(&fine, &arguments.map(Wide::from_f64).q)?;
+    angles.extend(values.iter().map(wide_circle).collect::<Option<Vec<_>>>()?);
+    let computed = of_arm.factors(&fine)?;
     let signs = joints.map(|i| Inputs::<Wide>::sign(&inputs, i)).collect();
     let fading = |(i, joint): (usize, &Joint)| match joint.decay_velocity() {
         Some(velocity) => Some(inputs.stribeck(i, &Wide::from_formula(&formula(&velocity))?)),
         None => Some(Wide::from_f64(0.0)),
     };
     let stribeck = manipulator.joints.iter().enumerate().map(fading).collect::<Option<_>>()?;
-    Some(State { stribeck, ..State::of(arguments.map(Wide::from_f64), angles, signs, [0.0, 1.0].map(Wide::from_f64)) })
+    Some(State { stribeck, computed, ..State::of(arguments.map(Wide::from_f64), angles, signs, [0.0, 1.0].map(Wide::from_f64)) })
 }
 
 fn list(values: &[f64], real: Float) -> String {

@@ -143,7 +143,7 @@ fn coefficients_are_constant() {
     let mut subject = subject("panda7");
     let column = subject.column("mcx7");
     let felt = subject.felt(column);
-    let cosine = subject.step(Step::Cosine(Angle { terms: vec![(0, 1)], turn: None }));
+    let cosine = subject.step(Step::Cosine(Angle { terms: vec![(0, 1)], turn: None, factors: Vec::new(), computed: None }));
     subject.replace(column, felt.clone(), |row| Step::Multiply(row[column], cosine));
     subject.check(&format!("[{}][{column}] differs: column `mcx7", felt[0]));
 }

@@ -3,6 +3,7 @@
 use std::collections::HashMap;
 
 use super::{AngleSum, ExprId, Node, Pool, Symbol};
+use crate::exact::Number;
 
 impl Pool {
     /// The derivative of each expression, where `of` gives the derivative of each symbol.
@@ -59,11 +60,15 @@ impl Pool {
     /// ∂/∂q_joint of each expression.
     pub fn partial_derivative(&mut self, exprs: &[ExprId], joint: u16) -> Vec<ExprId> {
         self.differentiate(exprs, &mut |pool, symbol| match symbol {
-            Symbol::Sine(i) if i == joint => pool.symbol(Symbol::Cosine(i)),
-            Symbol::Cosine(i) if i == joint => -pool.symbol(Symbol::Sine(i)),
+            Symbol::Sine(i) | Symbol::Cosine(i) => {
+                let slope = pool.slope(i, |pool, a, factor| if a == joint { pool.constant(factor) } else { ExprId::ZERO });
+                let slope = slope.unwrap_or(if i == joint { ExprId::ONE } else { ExprId::ZERO });
+                let turned = if slope == ExprId::ZERO { ExprId::ZERO } else { turned(pool, symbol, i) };
+                pool.mul(slope, turned)
+            }
             Symbol::SineOf(sum) | Symbol::CosineOf(sum) => {
                 let Some((_, minus)) = sum.terms().find(|&(i, _)| i == joint) else { return ExprId::ZERO };
-                turned(pool, symbol, sum).signed(minus)
+                turned_sum(pool, symbol, sum).signed(minus)
             }
             Symbol::Position(i) if i == joint => ExprId::ONE,
             _ => ExprId::ZERO,
@@ -73,17 +78,19 @@ impl Pool {
     /// d/dt of expressions in q alone, along dq: Σ_i ∂/∂q_i · dq_i.
     pub fn time_derivative(&mut self, exprs: &[ExprId]) -> Vec<ExprId> {
         self.differentiate(exprs, &mut |pool, symbol| match symbol {
-            Symbol::Sine(i) => {
-                let (c, rate) = (pool.symbol(Symbol::Cosine(i)), pool.symbol(Symbol::Rate(i)));
-                pool.mul(c, rate)
-            }
-            Symbol::Cosine(i) => {
-                let (s, rate) = (pool.symbol(Symbol::Sine(i)), pool.symbol(Symbol::Rate(i)));
-                -pool.mul(s, rate)
+            Symbol::Sine(i) | Symbol::Cosine(i) => {
+                let of_factor = |pool: &mut Pool, a, factor: &Number| {
+                    let (factor, rate) = (pool.constant(factor), pool.symbol(Symbol::Rate(a)));
+                    pool.mul(factor, rate)
+                };
+                let computed = pool.slope(i, of_factor);
+                let turned = turned(pool, symbol, i);
+                let rate = computed.unwrap_or_else(|| pool.symbol(Symbol::Rate(i)));
+                pool.mul(turned, rate)
             }
             Symbol::SineOf(sum) | Symbol::CosineOf(sum) => {
                 let rates: Vec<ExprId> = sum.terms().map(|(i, minus)| pool.symbol(Symbol::Rate(i)).signed(minus)).collect();
-                let (rate, turned) = (pool.sum(rates), turned(pool, symbol, sum));
+                let (rate, turned) = (pool.sum(rates), turned_sum(pool, symbol, sum));
                 pool.mul(turned, rate)
             }
             Symbol::Position(i) => pool.symbol(Symbol::Rate(i)),
@@ -92,8 +99,16 @@ impl Pool {
     }
 }
 
+/// The derivative of the sine or cosine of an angle by the angle.
+fn turned(pool: &mut Pool, symbol: Symbol, i: u16) -> ExprId {
+    match symbol {
+        Symbol::Sine(_) => pool.symbol(Symbol::Cosine(i)),
+        _ => -pool.symbol(Symbol::Sine(i)),
+    }
+}
+
 /// The derivative of the sine or cosine of a sum of angles by the sum.
-fn turned(pool: &mut Pool, symbol: Symbol, sum: AngleSum) -> ExprId {
+fn turned_sum(pool: &mut Pool, symbol: Symbol, sum: AngleSum) -> ExprId {
     match symbol {
         Symbol::SineOf(_) => pool.symbol(Symbol::CosineOf(sum)),
         _ => -pool.symbol(Symbol::SineOf(sum)),
@@ -101,6 +116,15 @@ fn turned(pool: &mut Pool, symbol: Symbol, sum: AngleSum) -> ExprId {
 }
 
 impl Pool {
+    /// The sum over the coordinates of a computed angle of what `of` gives for a coordinate and its factor; `None` of other angles.
+    fn slope(&mut self, index: u16, of: impl Fn(&mut Pool, u16, &Number) -> ExprId) -> Option<ExprId> {
+        let factors = self.field().computed()?.get(index)?.factors.clone();
+        Some(factors.iter().fold(ExprId::ZERO, |sum, (a, factor)| {
+            let term = of(self, *a, factor);
+            self.add(sum, term)
+        }))
+    }
+
     /// Expressions rebuilt in another pool, with each symbol replaced by what `of` says.
     pub fn substitute_into(&self, target: &mut Pool, exprs: &[ExprId], of: &dyn Fn(&mut Pool, Symbol) -> ExprId) -> Vec<ExprId> {
         let needed = self.reachable(exprs);

@@ -29,8 +29,16 @@ impl Pool {
     pub fn without_cancelled_variables(&self, exprs: &[ExprId]) -> Option<(Pool, Vec<ExprId>)> {
         let zero = [self.field.zero(); 2];
         let slopes = self.slopes(exprs);
-        let cancelled: BTreeSet<Variable> =
-            slopes.into_iter().filter(|(_, slope)| *slope == zero).map(|(variable, _)| variable).collect();
+        // What a computed angle depends on stays: without a coordinate it would be another angle.
+        let computed: Vec<u16> = self.angles(exprs).into_iter().flat_map(|sum| sum.terms().map(|(i, _)| i)).collect();
+        let computed = computed.into_iter().filter_map(|i| Some((i, self.field.computed()?.get(i)?)));
+        let kept: BTreeSet<u16> = computed.flat_map(|(i, angle)| angle.factors.iter().map(|(a, _)| *a).chain([i])).collect();
+        let is_kept = |variable: Variable| match variable {
+            Variable::Angle(i) | Variable::Symbol(Symbol::Position(i)) => kept.contains(&i),
+            Variable::Symbol(_) => false,
+        };
+        let cancelled = slopes.into_iter().filter(|(variable, slope)| *slope == zero && !is_kept(*variable));
+        let cancelled: BTreeSet<Variable> = cancelled.map(|(variable, _)| variable).collect();
         if cancelled.is_empty() {
             return None;
         }

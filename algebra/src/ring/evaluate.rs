@@ -58,8 +58,12 @@ impl Pool {
 
     /// The value of a node of constant value: where all angles are 0 and everything else is 0 too.
     pub(super) fn value_at_origin(&mut self, node: Node) -> Number {
+        let computed = self.field.computed().cloned();
+        let turn = |index: u16| computed.as_ref().and_then(|angles| angles.get(index)).map(|angle| angle.turn.clone());
         let origin = |symbol| match symbol {
-            Symbol::Cosine(_) | Symbol::CosineOf(_) => Number::one(),
+            Symbol::Sine(i) => turn(i).map_or_else(Number::zero, |[sine, _]| sine),
+            Symbol::Cosine(i) => turn(i).map_or_else(Number::one, |[_, cosine]| cosine),
+            Symbol::CosineOf(_) => Number::one(),
             _ => Number::zero(),
         };
         let operands = match node {
@@ -94,6 +98,29 @@ impl Pool {
 
     fn origin_value(&self, expr: ExprId) -> Number {
         Number::clone(self.at_origin[expr.index()].as_ref().expect("operands come first"))
+    }
+
+    /// A state whose computed angles are related to their coordinates, from one whose angles are independent: that has the units.
+    pub fn related_state<'a>(&'a self, of: impl Fn(Symbol) -> Number + 'a) -> impl Fn(Symbol) -> Number + 'a {
+        move |symbol| {
+            let Some((angle, angles)) = symbol.angle().zip(self.field.computed()) else { return of(symbol) };
+            let unit = |unit: u16| (of(Symbol::Sine(unit)), of(Symbol::Cosine(unit)));
+            let turn = || unreachable!("coupled arms have no turned sums");
+            let (sine, cosine) = angle.circle(
+                (Number::zero(), Number::one()),
+                |index| angles.rational_point(index, unit),
+                turn,
+                |(s, c), (t, d), minus| {
+                    let t = if minus { -t } else { t.clone() };
+                    (s.times(d).plus(&c.times(&t)), c.times(d).minus(&s.times(&t)))
+                },
+            );
+            if matches!(symbol, Symbol::Sine(_) | Symbol::SineOf(_)) {
+                sine
+            } else {
+                cosine
+            }
+        }
     }
 
     /// Rational points of the circle and small rational numbers for all other symbols: a state to evaluate at, by number.

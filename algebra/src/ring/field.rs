@@ -8,6 +8,8 @@
 //! Roots of integers are products of the roots of a *basis*: integers without common factors, found by greatest common divisors alone, since
 //! the norm of an axis is too long to be factored. No product of some of them is a square, so that the sign of each root is free.
 
+pub mod computed;
+
 use std::collections::{BTreeMap, BTreeSet, HashSet};
 use std::sync::Arc;
 
@@ -19,6 +21,7 @@ use super::turn::Turn;
 use super::AngleSum;
 use crate::exact::{Atom, Number, Rational, Shared};
 use crate::scramble::scramble;
+use computed::{ComputedAngle, ComputedAngles};
 
 /// 2^64 - 2^32 + 1.
 const FIRST_PRIME: u64 = 0xffff_ffff_0000_0001;
@@ -47,6 +50,8 @@ impl Element {
 pub struct Field {
     /// The constant angle of [`AngleSum::turned`], with its sine and cosine.
     turn: Option<(Arc<Turn>, (Element, Element))>,
+    /// Angles that functions compute.
+    computed: Option<Arc<ComputedAngles>>,
     /// The basis of the integers under roots, with a root of each.
     roots: Vec<(UBig, Element)>,
     p: u64,
@@ -105,12 +110,34 @@ impl Field {
         // Newton's iteration doubles the correct bits of the inverse modulo 2^64.
         let inverse = (0..6).fold(p, |x, _| x.wrapping_mul(2u64.wrapping_sub(p.wrapping_mul(x))));
         let r = (u128::MAX % u128::from(p) + 1) % u128::from(p);
-        Field { turn: None, roots: Vec::new(), p, inverse, r_squared: r as u64, atoms: BTreeMap::new() }
+        Field { turn: None, computed: None, roots: Vec::new(), p, inverse, r_squared: r as u64, atoms: BTreeMap::new() }
     }
 
     /// The constant angle of sums that are turned.
     pub fn turn(&self) -> Option<&Turn> {
         self.turn.as_ref().map(|(turn, _)| &**turn)
+    }
+
+    /// The same field for the coordinates of an arm, with angles that are sums of them.
+    #[must_use]
+    pub fn with_computed(&self, coordinates: u16, angles: Vec<ComputedAngle>) -> Field {
+        let mut field = self.clone();
+        let angles = ComputedAngles::new(coordinates, angles, &mut field);
+        field.computed = Some(Arc::new(angles));
+        field
+    }
+
+    /// Angles that functions compute.
+    pub fn computed(&self) -> Option<&Arc<ComputedAngles>> {
+        self.computed.as_ref()
+    }
+
+    /// Sine and cosine of the joint variable, or of the computed angle, of an index, where units have the points of these numbers.
+    pub fn point(&self, index: u16, unit: impl Fn(u16) -> Element) -> (Element, Element) {
+        match &self.computed {
+            Some(angles) => angles.point(self, index, |index| self.circle(unit(index))),
+            None => self.circle(unit(index)),
+        }
     }
 
     /// The prime.
@@ -314,12 +341,28 @@ impl Field {
         (self.mul(self.add(t, t), scale), self.mul(self.sub(self.one(), square), scale))
     }
 
+    /// Sine and cosine of a sum of two angles.
+    pub(super) fn plus(&self, (s, c): (Element, Element), (t, d): (Element, Element)) -> (Element, Element) {
+        (self.add(self.mul(s, d), self.mul(c, t)), self.sub(self.mul(c, d), self.mul(s, t)))
+    }
+
+    /// Sine and cosine of so many times an angle.
+    pub(super) fn multiple(&self, point: (Element, Element), count: u64) -> (Element, Element) {
+        (0..u64::BITS - count.leading_zeros()).rev().fold((self.zero(), self.one()), |sum, bit| {
+            let twice = self.plus(sum, sum);
+            if count >> bit & 1 == 1 {
+                self.plus(twice, point)
+            } else {
+                twice
+            }
+        })
+    }
+
     /// Sine and cosine of a sum of angles from those of its terms.
     pub fn circle_of(&self, sum: AngleSum, of: impl Fn(u16) -> (Element, Element)) -> (Element, Element) {
         let turn = || self.turn.as_ref().map(|(_, circle)| *circle).expect("only a field with a turn has turned sums");
         sum.circle((self.zero(), self.one()), of, turn, |&(s, c), &(t, d), minus| {
-            let t = if minus { self.neg(t) } else { t };
-            (self.add(self.mul(s, d), self.mul(c, t)), self.sub(self.mul(c, d), self.mul(s, t)))
+            self.plus((s, c), (if minus { self.neg(t) } else { t }, d))
         })
     }
 

@@ -7,6 +7,7 @@ use std::rc::Rc;
 
 use dashu_base::{Abs, Signed};
 
+use super::field::computed::ComputedAngles;
 use super::normal_form::{Harmonic, NormalForm, Powers};
 use super::Symbol;
 use crate::exact::{Atom, Number, Rational};
@@ -29,6 +30,8 @@ pub struct Printer<'a> {
     pub parameters: &'a [String],
     /// Velocities of the joints' friction, of its elementary functions; 1 where it has no velocity.
     pub velocities: &'a [Number],
+    /// Angles that functions compute; they are written out.
+    pub computed: Option<&'a ComputedAngles>,
     /// Constants as decimals of so many digits, 1 to 17; none: exactly.
     pub digits: Option<u8>,
 }
@@ -40,7 +43,12 @@ impl Printer<'_> {
         let (word, latex, index) = match symbol {
             Symbol::Sine(i) | Symbol::Cosine(i) => {
                 let name = if matches!(symbol, Symbol::Sine(_)) { "sin" } else { "cos" };
-                return if text { format!("{name}(q{})", i + 1) } else { format!("\\{name} q_{{{}}}", i + 1) };
+                return match (self.computed(i), text) {
+                    (Some(angle), true) => format!("{name}({angle})"),
+                    (Some(angle), false) => format!("\\{name}\\left({angle}\\right)"),
+                    (None, true) => format!("{name}(q{})", i + 1),
+                    (None, false) => format!("\\{name} q_{{{}}}", i + 1),
+                };
             }
             Symbol::SineOf(sum) | Symbol::CosineOf(sum) => {
                 let name = if matches!(symbol, Symbol::SineOf(_)) { "sin" } else { "cos" };
@@ -91,6 +99,17 @@ impl Printer<'_> {
             (false, true) => format!("{latex}{}}}", index + 1),
             (false, false) => format!("{latex}_{{{}}}", index + 1),
         }
+    }
+
+    /// A computed angle as the sum that it is.
+    fn computed(&self, index: u16) -> Option<String> {
+        let angle = self.computed?.get(index)?;
+        let mut sum = Sum::default();
+        for (a, factor) in &angle.factors {
+            self.product(&mut sum, factor, [self.symbol(Symbol::Position(*a))]);
+        }
+        self.constant(&mut sum, &angle.offset);
+        Some(sum.text)
     }
 
     /// A formula.
@@ -257,11 +276,13 @@ impl Printer<'_> {
     fn harmonic(&self, harmonic: &Harmonic) -> String {
         let mut sum = Sum::default();
         for (index, k) in &harmonic.angles {
-            let name = match self.notation {
-                Notation::Text => format!("q{}", index + 1),
-                Notation::Latex => format!("q_{{{}}}", index + 1),
-            };
             let size = k.unsigned_abs();
+            let name = match (self.computed(*index), self.notation) {
+                (Some(angle), Notation::Text) if size == 1 && harmonic.angles.len() == 1 => angle,
+                (Some(angle), _) => format!("({angle})"),
+                (None, Notation::Text) => format!("q{}", index + 1),
+                (None, Notation::Latex) => format!("q_{{{}}}", index + 1),
+            };
             let text = match (size, self.notation) {
                 (1, _) => name,
                 (_, Notation::Text) => format!("{size}*{name}"),

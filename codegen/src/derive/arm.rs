@@ -16,6 +16,7 @@ use super::parameters::{second_moments, Inertial, StandardParameter, View};
 use crate::exact::Number;
 use crate::kinds::JointKind;
 use crate::manipulator::{LinkId, Manipulator, Placement, Pose};
+use crate::ring::field::Field;
 use crate::ring::matrix::{transpose, Matrix, Vector, ZERO};
 use crate::ring::{ExprId, Pool, Symbol};
 
@@ -391,9 +392,14 @@ impl Arm {
         }
     }
 
+    /// The field of expressions in coordinates from that of expressions in joint variables.
+    pub(crate) fn field_of_coordinates(&self, field: &Field) -> Field {
+        self.coupling.as_ref().map_or_else(|| field.clone(), |coupled| coupled.field(field))
+    }
+
     /// Expressions in the variables of joints as expressions in coordinates, in a pool of their own where joints are coupled.
     pub fn in_coordinates(&self, pool: Pool, exprs: Vec<ExprId>) -> (Pool, Vec<ExprId>) {
-        let into = Pool::new(pool.field().clone());
+        let into = Pool::new(self.field_of_coordinates(pool.field()));
         self.in_coordinates_of(pool, exprs, into)
     }
 

@@ -36,14 +36,19 @@ const SIMPLE_STATES: u64 = 24;
 pub fn dependence(pool: &Pool, y: &[Vec<ExprId>]) -> Dependence {
     let columns = y.first().map_or(0, Vec::len);
     let (pivots, reduced) = stacked_echelon(pool, y);
-    let mut dependent = Vec::new();
+    let (mut dependent, mut missed) = (Vec::new(), Vec::new());
     for column in (0..columns).filter(|c| !pivots.contains(c)) {
         let support: Vec<usize> =
             pivots.iter().enumerate().filter(|&(row, _)| reduced[row][column] != pool.field().zero()).map(|(_, &p)| p).collect();
-        let coefficients = if support.is_empty() { Vec::new() } else { exact_combination(pool, y, column, &support) };
-        dependent.push((column, support.into_iter().zip(coefficients).collect()));
+        let coefficients = if support.is_empty() { Some(Vec::new()) } else { exact_combination(pool, y, column, &support) };
+        match coefficients {
+            Some(coefficients) => dependent.push((column, support.into_iter().zip(coefficients).collect())),
+            None => missed.push(column),
+        }
     }
-    Dependence { independent: pivots, dependent }
+    let mut independent = [pivots, missed].concat();
+    independent.sort_unstable();
+    Dependence { independent, dependent }
 }
 
 /// How many parameters a motion can tell apart: the rank of Y stacked over many states.
@@ -80,16 +85,17 @@ fn field_values(pool: &Pool, y: &[Vec<ExprId>], state: u64) -> Vec<Vec<Element>>
         };
         field.from_u64(scramble(scramble(state << 8 | kind) ^ u64::from(index)))
     };
+    let point = |i: u16| field.point(i, |unit| draw(Symbol::Sine(unit)));
     let mut values: Vec<Element> = Vec::with_capacity(pool.len());
     for index in 0..pool.len() {
         let of = |e: ExprId| if e.is_negated() { field.neg(values[e.index()]) } else { values[e.index()] };
         let expr = pool.expr(index);
         values.push(match pool.node(expr) {
             Node::Constant(_) => pool.fingerprint(expr)[0],
-            Node::Symbol(symbol @ Symbol::Sine(_)) => field.circle(draw(symbol)).0,
-            Node::Symbol(symbol @ Symbol::Cosine(_)) => field.circle(draw(symbol)).1,
-            Node::Symbol(Symbol::SineOf(sum)) => field.circle_of(sum, |i| field.circle(draw(Symbol::Sine(i)))).0,
-            Node::Symbol(Symbol::CosineOf(sum)) => field.circle_of(sum, |i| field.circle(draw(Symbol::Sine(i)))).1,
+            Node::Symbol(Symbol::Sine(i)) => point(i).0,
+            Node::Symbol(Symbol::Cosine(i)) => point(i).1,
+            Node::Symbol(Symbol::SineOf(sum)) => field.circle_of(sum, point).0,
+            Node::Symbol(Symbol::CosineOf(sum)) => field.circle_of(sum, point).1,
             Node::Symbol(symbol) => draw(symbol),
             Node::Add(a, b) => field.add(of(a), of(b)),
             Node::Mul(a, b) => field.mul(of(a), of(b)),
@@ -123,11 +129,42 @@ fn echelon(field: &Field, mut matrix: Vec<Vec<Element>>, columns: usize) -> (Vec
     (pivots, matrix)
 }
 
-/// The exact coefficients of Y_column = Σ k_s Y_s over the support: from as many equations as unknowns, those with the smallest numbers.
-fn exact_combination(pool: &Pool, y: &[Vec<ExprId>], column: usize, support: &[usize]) -> Vec<Number> {
-    let simple = (0..SIMPLE_STATES).map(|s| Box::new(Pool::simple_state(s)) as Box<dyn Fn(Symbol) -> Number>);
-    let general = (0..).map(|s| Box::new(Pool::rational_state(s)) as Box<dyn Fn(Symbol) -> Number>);
-    let mut states = simple.chain(general);
+/// The exact coefficients of Y_column = Σ k_s Y_s over the support: from as many equations as unknowns, those with the smallest numbers. `None`
+/// where exact states do not have the relations between computed angles that the column depends by.
+fn exact_combination(pool: &Pool, y: &[Vec<ExprId>], column: usize, support: &[usize]) -> Option<Vec<Number>> {
+    type State<'a> = Box<dyn Fn(Symbol) -> Number + 'a>;
+    let states = || {
+        let simple = (0..SIMPLE_STATES).map(|s| Box::new(Pool::simple_state(s)) as State<'_>);
+        simple.chain((0..).map(|s| Box::new(Pool::rational_state(s)) as State<'_>))
+    };
+    let found = combination_at(pool, y, (column, support), states());
+    if pool.field().computed().is_none() || is_combination(pool, y, (column, support), &found) {
+        return Some(found);
+    }
+    let related = states().map(|state| Box::new(pool.related_state(state)) as State<'_>);
+    let found = combination_at(pool, y, (column, support), related);
+    is_combination(pool, y, (column, support), &found).then_some(found)
+}
+
+/// Whether a column of Y is the combination of others, at the points of the field.
+fn is_combination(pool: &Pool, y: &[Vec<ExprId>], (column, support): (usize, &[usize]), coefficients: &[Number]) -> bool {
+    let mut field = pool.field().clone();
+    let coefficients: Vec<Element> = coefficients.iter().map(|number| field.number(number)).collect();
+    y.iter().all(|row| {
+        (0..2).all(|point| {
+            let terms = support.iter().zip(&coefficients).map(|(&c, &k)| field.mul(k, pool.fingerprint(row[c])[point]));
+            terms.fold(field.zero(), |sum, term| field.add(sum, term)) == pool.fingerprint(row[column])[point]
+        })
+    })
+}
+
+/// The coefficients that these states give.
+fn combination_at<'a>(
+    pool: &Pool,
+    y: &[Vec<ExprId>],
+    (column, support): (usize, &[usize]),
+    mut states: impl Iterator<Item = Box<dyn Fn(Symbol) -> Number + 'a>>,
+) -> Vec<Number> {
     let mut field = pool.field().clone();
     let mut equations: Vec<Vec<Number>> = Vec::new();
     let mut wanted = SIMPLE_STATES as usize;

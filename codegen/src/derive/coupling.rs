@@ -7,13 +7,16 @@
 //! ```
 //!
 //! Under a constant map Christoffel's symbols of the first kind are carried over term by term: S' C S is Christoffel's of S' B S.
-//! A joint that turns follows others by whole numbers. So its sine and cosine are polynomials in sines and cosines of coordinates, and the pool of
-//! coordinates finds by its fingerprints all that the coupling cancels.
+//! Where a joint that turns follows others by whole numbers, its sine and cosine are polynomials in those of coordinates. Else they are those of an
+//! angle that the function computes ([`ComputedAngle`]), which the field of the coordinates relates to others. So the pool of coordinates
+//! finds by its fingerprints all that the coupling cancels.
 
 use std::cmp::Ordering;
 use std::sync::Arc;
 
 use crate::manipulator::{Coupling, JointVariable};
+use crate::ring::field::computed::ComputedAngle;
+use crate::ring::field::Field;
 use crate::ring::{AngleSum, Elementary, ExprId, Pool, Symbol};
 
 /// The coupling of an arm, with the factors in its pool.
@@ -22,6 +25,8 @@ pub struct Coupled {
     coupling: Arc<Coupling>,
     /// S: for each joint its coordinates with their factors.
     rows: Vec<Vec<(usize, ExprId)>>,
+    /// Angles that functions compute.
+    computed: Vec<ComputedAngle>,
 }
 
 impl Coupled {
@@ -31,7 +36,15 @@ impl Coupled {
             variable.factors.iter().map(|(a, factor)| (*a, pool.constant(factor))).collect()
         };
         let rows = coupling.variables.iter().map(|variable| row(pool, variable)).collect();
-        Coupled { coupling: Arc::new(coupling.clone()), rows }
+        Coupled { coupling: Arc::new(coupling.clone()), rows, computed: coupling.computed() }
+    }
+
+    /// The field of coordinates from that of joint variables.
+    pub(super) fn field(&self, of_joints: &Field) -> Field {
+        if self.computed.is_empty() {
+            return of_joints.clone();
+        }
+        of_joints.with_computed(self.coupling.coordinates.len() as u16, self.computed.clone())
     }
 
     /// S' x along one dimension of a list: of so many lists of as many entries as there are joints, each an entry of `inner` numbers.
@@ -147,6 +160,10 @@ impl Coupled {
         };
         for (joint, minus) in sum.terms() {
             let variable = self.variable(joint);
+            if let Some((sine, cosine)) = self.computed(pool, variable) {
+                circle = plus(pool, circle, (sine.signed(minus), cosine));
+                continue;
+            }
             if let Some([sine, cosine]) = &variable.turn {
                 let turn = (pool.constant(sine).signed(minus), pool.constant(cosine));
                 circle = plus(pool, circle, turn);
@@ -162,11 +179,19 @@ impl Coupled {
         circle
     }
 
+    /// Sine and cosine of a joint variable whose angle the function computes.
+    fn computed(&self, pool: &mut Pool, variable: &JointVariable) -> Option<(ExprId, ExprId)> {
+        let (angle, opposite) = variable.computed()?;
+        let place = self.computed.iter().position(|of| *of == angle)?;
+        let index = (self.coupling.coordinates.len() + place) as u16;
+        Some((pool.symbol(Symbol::Sine(index)).signed(opposite), pool.symbol(Symbol::Cosine(index))))
+    }
+
     /// A sum of joint variables as a sum of coordinates, where it is one without a constant in which each stands once.
     fn as_sum(&self, sum: AngleSum) -> Option<AngleSum> {
         let mut all = AngleSum { plus: 0, minus: 0, turned: false };
         for (joint, minus) in sum.terms() {
-            let JointVariable { factors, offset, .. } = self.variable(joint);
+            let JointVariable { factors, offset, is_whole, .. } = self.variable(joint);
             for (a, factor) in factors {
                 let opposite = factor.sign() == Ordering::Less;
                 let is_one = if opposite { (-factor).is_one() } else { factor.is_one() };
@@ -175,7 +200,7 @@ impl Coupled {
                 }
                 *(if opposite != minus { &mut all.minus } else { &mut all.plus }) |= 1 << a;
             }
-            if !offset.is_zero() {
+            if !offset.is_zero() || !is_whole {
                 return None;
             }
         }

@@ -104,7 +104,8 @@ pub fn determinant(model: &Model, view: View<'_>) -> Option<Determinant> {
     let (mut simple, task) = without_fixed(&mut pool, &[value], &task);
     let reduced = of_columns(&mut simple, &task)[(1 << task.len()) - 1];
     debug_assert!(simple.fingerprint(reduced) == pool.fingerprint(value));
-    let form = simple.normal_forms(&[reduced], TERMS).remove(0);
+    // Factors of computed angles are not told apart.
+    let form = simple.normal_forms(&[reduced], TERMS).remove(0).filter(|_| simple.field().computed().is_none());
     let factors = form.as_ref().map_or_else(Vec::new, |form| factors(model, form));
     Some(Determinant { pool: simple, value: reduced, form, factors })
 }
@@ -120,7 +121,8 @@ fn in_coordinates(mut pool: Pool, arm: &Arm, jacobian: Vec<Vec<ExprId>>) -> (Poo
 fn without_fixed(pool: &mut Pool, values: &[ExprId], matrix: &[Vec<ExprId>]) -> (Pool, Vec<Vec<ExprId>>) {
     let columns = matrix[0].len();
     let mut simple = Pool::new(pool.field().clone());
-    let all = 0..columns as u16;
+    // A computed angle holds coordinates that it is not taken apart into.
+    let all = 0..if pool.field().computed().is_some() { 0 } else { columns as u16 };
     let fixed: Vec<u16> = all.filter(|&i| pool.partial_derivative(values, i).iter().all(|d| *d == ExprId::ZERO)).collect();
     let entries = pool.substitute_into(&mut simple, &matrix.concat(), &|pool, symbol| match symbol {
         Symbol::Sine(i) | Symbol::Position(i) if fixed.contains(&i) => ExprId::ZERO,
@@ -346,7 +348,7 @@ fn half_angle_term(angle: u16, a: usize, b: usize, c: &Number) -> NormalForm {
 fn at(print: impl Fn(&Printer<'_>) -> String) -> Zeros {
     Zeros::Of(
         [Notation::Text, Notation::Latex]
-            .map(|notation| print(&Printer { notation, parameters: &[], velocities: &[], digits: None })),
+            .map(|notation| print(&Printer { notation, parameters: &[], velocities: &[], computed: None, digits: None })),
     )
 }
 

@@ -473,6 +473,7 @@ fn check_determinant(text: &str, form: &str, factors: &[(&str, Option<&str>)]) {
         notation: crate::ring::print::Notation::Text,
         parameters: &[],
         velocities: &[],
+        computed: None,
         digits: None,
     };
     assert_eq!(printer.form(found.form.as_ref().expect("short")), form);

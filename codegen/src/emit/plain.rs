@@ -116,18 +116,21 @@ pub(super) fn waves(module: &Module, function: &Function, syntax: &dyn Syntax) -
         sine: name(angle.sine),
         cosine: name(angle.cosine),
     };
-    angles(&function.symbols()).into_iter().map(wave).collect()
+    angles(&function.symbols(), &function.computed).into_iter().map(wave).collect()
 }
 
 fn sum(angle: &Angle, turn: Option<&Number>, syntax: &dyn Syntax) -> String {
     let mut text = String::new();
-    for (k, &(joint, minus)) in angle.terms.iter().enumerate() {
+    for (k, (&(joint, minus), factor)) in angle.terms.iter().zip(angle.factors()).enumerate() {
         if k > 0 {
             text += if minus { " - " } else { " + " };
         }
+        if let Some(factor) = factor {
+            text += &format!("{} * ", syntax.number(&factor));
+        }
         text += &syntax.entry(Argument::Q, usize::from(joint));
     }
-    if let Some(turn) = turn.filter(|_| angle.turned) {
+    if let Some(turn) = angle.constant(turn) {
         let turn = syntax.number(turn);
         text += &match turn.strip_prefix('-') {
             Some(size) => format!(" - {size}"),

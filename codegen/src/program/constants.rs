@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use super::listing::{angles, Listing};
+use super::listing::{angles, Angle, Listing};
 use super::{Function, Module};
 use crate::exact::Number;
 use crate::parallel::parallel_map;
@@ -13,11 +13,14 @@ impl Module {
     pub fn constants(&self) -> BTreeMap<String, Vec<Number>> {
         let of_function = |function: &Function| {
             // Angles come first.
-            let angles = angles(&function.symbols());
-            let turns = angles.iter().filter(|angle| angle.turned).filter_map(|_| self.turn.as_ref());
+            let angles = angles(&function.symbols(), &function.computed);
+            let turn = self.turn.as_ref();
+            let of_angle =
+                |angle: &Angle| angle.factors().into_iter().flatten().chain(angle.constant(turn).cloned()).collect::<Vec<_>>();
+            let turns: Vec<Number> = angles.iter().flat_map(of_angle).collect();
             let listing = Listing::of(function);
             let size = |value: &Number| if value.is_negative() { -value } else { value.clone() };
-            (function.name(), turns.chain(listing.constants()).map(size).collect())
+            (function.name(), turns.iter().chain(listing.constants()).map(size).collect())
         };
         let mut constants: BTreeMap<String, Vec<Number>> = parallel_map(&self.functions, of_function).into_iter().collect();
         let nominal = self.parameters.iter().map(|parameter| parameter.nominal.clone());

@@ -4,6 +4,7 @@ use std::collections::BTreeSet;
 
 use super::{Function, Operand, Operation};
 use crate::ring::count::{DIVISION_COST, SINE_COSINE_COST};
+use crate::ring::field::computed::ComputedAngle;
 
 /// Operations of a function: one per binary `*`, `+` or `-`, `/`; sign changes and sines apart.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -47,6 +48,10 @@ impl Cost {
         cost.sincos = angles.len();
         cost.exp = function.stribeck.len();
         cost.add += angles.iter().map(|angle| angle.additions()).sum::<usize>();
+        for (mul, add) in function.computed.values().map(ComputedAngle::operations) {
+            cost.mul += mul;
+            cost.add += add;
+        }
         cost.neg = function.outputs.iter().filter(|output| output.negated).count();
         cost
     }

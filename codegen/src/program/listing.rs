@@ -13,6 +13,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use super::{Function, Operand, Operation, Scalar, Step};
 use crate::catalogue::Argument;
 use crate::exact::Number;
+use crate::ring::field::computed::ComputedAngle;
 use crate::ring::{AngleSum, Elementary, Symbol};
 
 /// Steps with one use are inlined into the step that uses them, up to this many operands in a line.
@@ -96,10 +97,34 @@ pub struct Angle {
     pub terms: Vec<(u16, bool)>,
     /// Whether the constant angle is added.
     pub turned: bool,
+    /// Its own factors and constant, of an angle that the function computes; `terms` are then of its coordinates.
+    pub computed: Option<ComputedAngle>,
     /// The name of its sine, where that is used.
     pub sine: Option<Name>,
     /// The name of its cosine, where that is used.
     pub cosine: Option<Name>,
+}
+
+impl Angle {
+    /// The factors of its terms without their signs, `None` where a factor is 1.
+    pub fn factors(&self) -> Vec<Option<Number>> {
+        let size = |(_, factor): &(u16, Number)| {
+            let size = if factor.is_negative() { -factor } else { factor.clone() };
+            (!size.is_one()).then_some(size)
+        };
+        match &self.computed {
+            Some(angle) => angle.factors.iter().map(size).collect(),
+            None => vec![None; self.terms.len()],
+        }
+    }
+
+    /// The constant that it adds; `turn` is that of turned sums.
+    pub fn constant<'a>(&'a self, turn: Option<&'a Number>) -> Option<&'a Number> {
+        match &self.computed {
+            Some(angle) => Some(&angle.offset).filter(|offset| !offset.is_zero()),
+            None => turn.filter(|_| self.turned),
+        }
+    }
 }
 
 impl Argument {
@@ -210,12 +235,19 @@ impl Function {
     }
 }
 
-/// The angles whose sines and cosines are among the symbols of a function: sums, then single joint variables.
-pub fn angles(symbols: &[Symbol]) -> Vec<Angle> {
+/// The angles whose sines and cosines are among the symbols of a function: sums, then single joint variables, then those that it computes.
+pub fn angles(symbols: &[Symbol], computed: &BTreeMap<u16, ComputedAngle>) -> Vec<Angle> {
     let mut sums: BTreeMap<AngleSum, Angle> = BTreeMap::new();
     let mut single: BTreeMap<u16, Angle> = BTreeMap::new();
-    let of_sum = |sum: AngleSum| Angle { terms: sum.terms().collect(), turned: sum.turned, sine: None, cosine: None };
-    let of_one = |i: u16| Angle { terms: vec![(i, false)], turned: false, sine: None, cosine: None };
+    let plain = |terms: Vec<(u16, bool)>, turned: bool| Angle { terms, turned, computed: None, sine: None, cosine: None };
+    let of_sum = |sum: AngleSum| plain(sum.terms().collect(), sum.turned);
+    let of_one = |i: u16| match computed.get(&i) {
+        Some(angle) => {
+            let terms = angle.factors.iter().map(|(a, factor)| (*a, factor.is_negative())).collect();
+            Angle { computed: Some(angle.clone()), ..plain(terms, false) }
+        }
+        None => plain(vec![(i, false)], false),
+    };
     for &symbol in symbols {
         let name = Some(Name::SineOrCosine(symbol));
         match symbol {
@@ -528,6 +560,7 @@ mod tests {
             outputs: outputs.iter().map(|(operand, negated)| Output { operand: operand.clone(), negated: *negated }).collect(),
             method: "hand",
             stribeck: BTreeMap::new(),
+            computed: BTreeMap::new(),
             fuse,
         };
         let listing = Listing::of(&function);
@@ -632,6 +665,7 @@ mod tests {
             outputs: outputs.to_vec(),
             method: "hand",
             stribeck: BTreeMap::new(),
+            computed: BTreeMap::new(),
             fuse: false,
         };
         let listing = Listing::of(&function);

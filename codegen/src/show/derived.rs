@@ -130,7 +130,8 @@ fn no_minors(model: &Model, why: &NoMinors) -> String {
         }
         NoMinors::TooLong(common) => {
             let parameters: Vec<String> = model.manipulator.parameters.iter().map(|parameter| parameter.name.clone()).collect();
-            let printer = Printer { notation: Notation::Text, parameters: &parameters, velocities: &[], digits: None };
+            let printer =
+                Printer { notation: Notation::Text, parameters: &parameters, velocities: &[], computed: None, digits: None };
             let factor = |factor: &Factor| format!("{} is {}", printer.form(&factor.form), factor.zeros.sentence());
             let common = common.iter().map(factor).collect::<Vec<_>>().join(", ");
             format!("{head}its Jacobian loses rank where a factor of all its minors is 0 ({common}); what is left of these is too long; {ASK_THE_PAGE}")

@@ -82,6 +82,7 @@ fn determinant(model: &Model, derived: Derived, names: &Names) -> Shown {
         content: Content::Closed(Vec::new()),
         parameters: names.parameters.clone(),
         velocities: model.manipulator.friction_velocities(),
+        computed: derived.derivation.pool.field().computed().cloned(),
         digits: names.style.digits,
         text: OnceLock::new(),
     };
@@ -115,6 +116,7 @@ fn matrix(model: &Model, part: &ResultPart, name: String, symbol: [String; 2], d
         content: Content::Closed(Vec::new()),
         parameters: names.parameters.clone(),
         velocities: model.manipulator.friction_velocities(),
+        computed: derivation.pool.field().computed().cloned(),
         factors: None,
         digits: names.style.digits,
         text: OnceLock::new(),

@@ -84,8 +84,13 @@ fn no_name_means_two_things() {
         let sheet = sheet(&text, &[name], Reading::Symbolic);
         let shown = &sheet.quantities[0];
         // In LaTeX an index may belong to the name or follow it.
-        let printer =
-            Printer { notation: Notation::Latex, parameters: &shown.parameters, velocities: &shown.velocities, digits: None };
+        let printer = Printer {
+            notation: Notation::Latex,
+            parameters: &shown.parameters,
+            velocities: &shown.velocities,
+            computed: None,
+            digits: None,
+        };
         let names = (0..shown.parameters.len()).map(|i| printer.symbol(Symbol::Parameter(i as u16)));
         let steps = shown.formulas(Notation::Latex).steps.into_iter().map(|(name, _)| name);
         let entries = (0..shown.rows).flat_map(|i| (0..shown.columns).map(move |j| (i, j)));
@@ -207,7 +212,7 @@ fn constants_have_as_many_digits_as_asked_for() {
     };
     assert_eq!(text(3), ["3.74*cos(q1 + q2) + 17.2*cos(q1)", "3.74*cos(q1 + q2)"]);
     assert_eq!(text(6)[1], "3.73714*cos(q1 + q2)");
-    let printer = |notation| Printer { notation, parameters: &[], velocities: &[], digits: Some(3) };
+    let printer = |notation| Printer { notation, parameters: &[], velocities: &[], computed: None, digits: Some(3) };
     let shown = |notation, numerator: i64, denominator: i64| {
         let number =
             crate::exact::Number::from(crate::exact::Rational::from(numerator) / crate::exact::Rational::from(denominator));

@@ -20,8 +20,10 @@ use crate::kinds::JointKind;
 use crate::manipulator::{Coupling, JointVariable, Limits};
 use crate::source::Span;
 use crate::suggest::did_you_mean;
+use armgen_algebra::ring::field::computed::ComputedAngles;
 
-/// Most turns of leaders, their factors without signs, that the angle of a joint is the sum of: sines and cosines are polynomials of this degree.
+/// Most turns of leaders, their factors without signs, of which sines and cosines are taken apart: they are polynomials of this degree. Of more, and
+/// of factors that are no whole numbers, they are those of a computed angle.
 const MOST_TURNS: i64 = 16;
 /// An offset beyond this many radians is a mistake.
 const LARGEST_ANGLE: i64 = 1_000_000;
@@ -63,7 +65,22 @@ pub(super) fn resolve(joints: &[JointDescription], context: &mut Context<'_>) ->
             context.report(Code::FollowerEffort, effort.span, message, "not used", help);
         }
     }
-    valid.then_some(Some(Coupling { coordinates, limits, variables }))
+    let coupling = Coupling { coordinates, limits, variables };
+    unrelated(joints, &all, &coupling, context);
+    valid.then_some(Some(coupling))
+}
+
+/// Warns of factors of so many digits that dependences between angles are not looked for.
+fn unrelated(joints: &[JointDescription], all: &[Vec<Leader>], coupling: &Coupling, context: &mut Context<'_>) {
+    let angles = coupling.computed();
+    for angle in ComputedAngles::unrelated(&angles) {
+        let own = |variable: &JointVariable| variable.computed().is_some_and(|(own, _)| own == angles[angle]);
+        let Some(i) = coupling.variables.iter().position(own) else { continue };
+        let place = all[i].first().map_or(joints[i].span, |leader| leader.span);
+        let message = format!("the angle of joint {} is taken as unrelated to that of a leader", call(i, &joints[i]));
+        let help = "the equations are right, and base parameters may be more than a motion can tell; a factor of fewer digits is related";
+        context.report(Code::UnrelatedFactor, place, message, "its fraction has a denominator beyond 2^40", help);
+    }
 }
 
 /// The leaders of a joint; `None` after a fault.
@@ -199,7 +216,7 @@ fn variable(
     }
     sums.retain(|_, factor| factor.sign() != Ordering::Equal);
     let turns = |joint: usize| joints[joint].kind.as_ref().is_some_and(|kind| kind.value == JointKind::Revolute);
-    let mut turn = None;
+    let (mut turn, mut is_whole) = (None, false);
     if turns(i) {
         let whole = |(a, factor): (&usize, &Number)| {
             factor.as_rational().filter(|factor| factor.is_int())?;
@@ -207,27 +224,8 @@ fn variable(
             (turns(coordinates[*a]) && size <= MOST_TURNS as f64).then_some(size as i64)
         };
         let sizes: Option<Vec<i64>> = sums.iter().map(whole).collect();
-        if sizes.is_none_or(|sizes| sizes.iter().sum::<i64>() > MOST_TURNS) {
-            let place = leaders.first().map_or(joints[i].span, |leader| leader.span);
-            let total = sums.values().map(|factor| size(factor).to_f64()).sum::<f64>();
-            let whole = sums.iter().all(|(a, k)| turns(coordinates[*a]) && k.as_rational().is_some_and(|k| k.is_int()));
-            let name = call(i, &joints[i]);
-            let (message, label) = match whole {
-                true => (
-                    format!("joint {name} turns, and follows others by {total}, more than {MOST_TURNS} in all"),
-                    "sine and cosine would be polynomials of too high a degree",
-                ),
-                false => (
-                    format!("joint {name} turns, and not by whole multiples of coordinates that turn"),
-                    "sine and cosine would be no polynomials",
-                ),
-            };
-            let help = format!(
-                "a joint that turns can follow others that turn, by whole numbers of at most {MOST_TURNS} in all: 1, -1, 2; a joint that slides can follow any"
-            );
-            context.report(Code::FractionalFactor, place, message, label, help);
-            valid = false;
-        } else if (&size(&constant) - &Number::from(LARGEST_ANGLE)).sign() == Ordering::Greater {
+        is_whole = sizes.is_some_and(|sizes| sizes.iter().sum::<i64>() <= MOST_TURNS);
+        if (&size(&constant) - &Number::from(LARGEST_ANGLE)).sign() == Ordering::Greater {
             let place = joints[i].offset.as_ref().map_or(joints[i].span, |offset| offset.span);
             let message = format!("the variable of joint {} begins at {} rad", call(i, &joints[i]), text_of(&constant));
             context.report(Code::OutOfRange, place, message, "too large", "angles are in radians, at most 1e6");
@@ -237,7 +235,7 @@ fn variable(
             turn = Some([angle.sin(), angle.cos()]);
         }
     }
-    (JointVariable { factors: sums.into_iter().collect(), offset: constant, turn }, valid)
+    (JointVariable { factors: sums.into_iter().collect(), offset: constant, turn, is_whole }, valid)
 }
 
 fn size(number: &Number) -> Number {

@@ -554,24 +554,43 @@ fn suggestions_lose_no_digit() {
     assert!(said.contains("check this tensor and the mass") && !said.contains("write"), "{said}");
 }
 
-/// A joint that turns by whole numbers too often is told by how much, not that they are no whole numbers.
+/// Few whole turns of joints that turn are told from angles that functions compute, and long fractions are warned of.
 #[test]
-fn turns_are_counted_over_all_leaders() {
+fn angles_that_are_no_whole_turns_are_computed() {
     let text = |follows: &str| {
-        let joint = |name: &str, more: &str| {
-            format!("  - {{name: {name}, type: revolute, axis: [0, 0, 1], {more}link: {{mass: 1, com: [0, 0, 0], inertia: {{xx: 1, yy: 1, zz: 1}}}}}}\n")
+        let joint = |name: &str, kind: &str, more: &str| {
+            format!("  - {{name: {name}, type: {kind}, axis: [0, 0, 1], {more}link: {{mass: 1, com: [0, 0, 0], inertia: {{xx: 1, yy: 1, zz: 1}}}}}}\n")
         };
-        let joints = [joint("a", ""), joint("b", &format!("follows: {{{follows}}}, ")), joint("c", "")].concat();
-        format!("name: r\nconvention: urdf\ngravity: [0, 0, -9.81]\njoints:\n{joints}")
+        let follows = format!("follows: {{{follows}}}, offset: 0.1, ");
+        let joints = [
+            joint("a", "revolute", ""),
+            joint("b", "revolute", &follows),
+            joint("c", "revolute", ""),
+            joint("d", "prismatic", ""),
+        ];
+        format!("name: r\nconvention: urdf\ngravity: [0, 0, -9.81]\njoints:\n{}", joints.concat())
     };
-    for (follows, expected) in [
-        ("a: 20", Some("joint `b` turns, and follows others by 20, more than 16 in all")),
-        ("a: 9, c: -9", Some("joint `b` turns, and follows others by 18, more than 16 in all")),
-        ("a: 20, c: 0.5", Some("joint `b` turns, and not by whole multiples of coordinates that turn")),
-        ("a: 8, c: -8", None),
+    for (follows, factors, is_warned) in [
+        ("a: 8, c: -8", None, false),
+        ("a: 9, c: -8", Some(vec!["9", "-8"]), false),
+        ("a: -0.5", Some(vec!["1/2"]), false),
+        ("a: -2, d: 3", Some(vec!["2", "-3"]), false),
+        ("a: -2, c: 0.5", Some(vec!["2", "-1/2"]), false),
+        ("d: 1", Some(vec!["1"]), false),
+        ("a: sqrt(2), c: 1/pi", Some(vec!["sqrt(2)", "pi^(-1)"]), false),
+        ("a: 0.1234567890123", Some(vec!["1234567890123/10000000000000"]), true),
     ] {
         let (arm, diagnostics) = read(&Source::new("robot.yaml", text(follows)));
-        let found = diagnostics.iter().find(|fault| fault.code == Code::FractionalFactor).map(|fault| fault.message.as_str());
-        assert_eq!((arm.is_some(), found), (expected.is_none(), expected), "{follows}: {diagnostics:?}");
+        let coupling = arm.and_then(|(arm, _)| arm.coupling).unwrap_or_else(|| panic!("{follows}: {diagnostics:?}"));
+        let variable = &coupling.variables[1];
+        let computed = variable.computed().map(|(angle, _)| angle);
+        let found = computed.as_ref().map(|angle| angle.factors.iter().map(|(_, factor)| factor.to_string()).collect::<Vec<_>>());
+        assert_eq!(
+            (found, variable.is_whole),
+            (factors.as_ref().map(|all| all.iter().map(ToString::to_string).collect()), factors.is_none()),
+            "{follows}"
+        );
+        assert_eq!(coupling.computed(), Vec::from_iter(computed), "{follows}");
+        assert_eq!(diagnostics.iter().any(|fault| fault.code == Code::UnrelatedFactor), is_warned, "{follows}");
     }
 }

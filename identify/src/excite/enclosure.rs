@@ -144,8 +144,12 @@ impl Arithmetic<f64> for Stretch<'_> {
     fn sine_cosine(&mut self, angle: &Angle<f64>) -> (Moving, Moving) {
         let zero = Moving { value: Interval::point(0.0), slope: Interval::point(0.0) };
         let mut sum = angle.turn.map_or(zero, |turn| self.constant(turn));
-        for &(entry, minus) in &angle.terms {
-            let term = self.arguments[angle.argument][entry];
+        for (i, &(entry, minus)) in angle.terms.iter().enumerate() {
+            let mut term = self.arguments[angle.argument][entry];
+            if let Some(Some(factor)) = angle.factors.get(i) {
+                let factor = self.constant(*factor);
+                term = self.result(Operator::Multiply, &factor, &term);
+            }
             let operator = if minus { Operator::Subtract } else { Operator::Add };
             sum = self.result(operator, &sum, &term);
         }

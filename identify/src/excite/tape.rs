@@ -85,11 +85,12 @@ impl Tape {
     pub(super) fn forwards(&self, arguments: &[&[Lanes]], room: &mut Room) {
         for (angle, [sine, cosine]) in self.angles.iter().zip(&mut room.sines) {
             for lane in 0..LANES {
-                let turned = |sum: f64, &(entry, minus): &(usize, bool)| {
-                    let x = arguments[angle.argument][entry][lane];
+                let turned = |sum: f64, (&(entry, minus), factor): (&(usize, bool), f64)| {
+                    let x = factor * arguments[angle.argument][entry][lane];
                     sum + if minus { -x } else { x }
                 };
-                (sine[lane], cosine[lane]) = angle.terms.iter().fold(angle.turn.unwrap_or(0.0), turned).sin_cos();
+                (sine[lane], cosine[lane]) =
+                    angle.terms.iter().zip(factors(angle)).fold(angle.turn.unwrap_or(0.0), turned).sin_cos();
             }
         }
         let first = self.constants.len();
@@ -175,9 +176,10 @@ impl Tape {
                     let is_sine = matches!(input, Input::Sine(_));
                     let by: Lanes = std::array::from_fn(|i| slope[i] * if is_sine { cosine[i] } else { -sine[i] });
                     let angle = &self.angles[angle];
-                    for &(entry, minus) in &angle.terms {
+                    for (&(entry, minus), factor) in angle.terms.iter().zip(factors(angle)) {
                         let to = &mut room.gradients[angle.argument][entry];
-                        (0..LANES).for_each(|i| to[i] += if minus { -by[i] } else { by[i] });
+                        let slope = if minus { -factor } else { factor };
+                        (0..LANES).for_each(|i| to[i] += slope * by[i]);
                     }
                     continue;
                 }
@@ -197,6 +199,11 @@ pub(super) fn sign(x: f64) -> f64 {
     } else {
         0.0
     }
+}
+
+/// The factors of the terms of an angle.
+fn factors(angle: &Angle<f64>) -> impl Iterator<Item = f64> + '_ {
+    (0..angle.terms.len()).map(|i| angle.factors.get(i).copied().flatten().unwrap_or(1.0))
 }
 
 #[cfg(test)]

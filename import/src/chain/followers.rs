@@ -20,9 +20,6 @@ use crate::values::Values;
 use crate::xml::shown;
 use crate::Code;
 
-/// Most turns of its leader for a turn of a follower: sines and cosines are polynomials of this degree.
-const MOST_TURNS: f64 = 16.0;
-
 /// How a joint follows another one.
 #[derive(Clone, Debug)]
 pub(crate) struct Follows {
@@ -195,27 +192,6 @@ fn variable(rows: &[Row], row: usize) -> Variable {
 /// Checks the couplings of the rows, and meets the limits of coordinates with those of their followers; faults and changes are reported.
 pub(super) fn check(rows: &mut [Row], values: &mut Values<'_>) {
     let variables: Vec<Variable> = (0..rows.len()).map(|row| variable(rows, row)).collect();
-    for (row, variable) in rows.iter().zip(&variables) {
-        let Some(follows) = row.follows.as_ref().filter(|_| !row.prismatic) else { continue };
-        let root = &rows[variable.root];
-        let factor = variable.factor.to_f64();
-        let whole = variable.factor.as_rational().is_some_and(|factor| factor.is_int());
-        let how = match (root.prismatic, whole) {
-            (true, _) => ", which slides".to_owned(),
-            (false, false) => format!(" by {factor}, which is no whole number"),
-            (false, true) if factor.abs() > MOST_TURNS => format!(" by {factor}, more than {MOST_TURNS}"),
-            (false, true) => continue,
-        };
-        let (name, leader) = (shown(&row.joint), shown(&root.joint));
-        let message = format!("the joint `{name}` turns and follows `{leader}`{how}");
-        let help = format!(
-            "a joint that turns can follow others that turn, by whole numbers of at most {MOST_TURNS}; lock it where it is to stand: `--lock {name}=0`"
-        );
-        values.report(Code::Mimic, follows.span, message, "", help);
-    }
-    if values.diagnostics.has_errors() {
-        return;
-    }
     for row in 0..rows.len() {
         if rows[row].follows.is_some() {
             meet(rows, &variables, row, values);

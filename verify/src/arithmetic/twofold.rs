@@ -6,10 +6,10 @@
 //! here as it does in f64, with a unit roundoff of 2^-92 in place of 2^-53 at the worst: **its error is below 2^-38 of the running bound**,
 //! and 256 bits ([`super::wide`]) are needed only to show the worst cases.
 
-use super::wide::{stribeck, Wide, WideArguments};
+use super::wide::{stribeck, wide_circle, Wide, WideArguments};
 use crate::element::Element;
 use crate::float::{Arguments, LANES};
-use crate::program::{Angle, Argument, Inputs, Program, Step};
+use crate::program::{Angle, Argument, Inputs, Program, Scaled, Step};
 
 /// high + low.
 pub type Pair = (f64, f64);
@@ -256,12 +256,36 @@ impl TwofoldArguments {
         }
         sum.unwrap_or((Twofold::ZERO, Twofold::of(|_| (1.0, 0.0))))
     }
+
+    /// Sine and cosine of a sum of joint variables with factors, and a constant.
+    fn scaled_wave(&self, terms: &[Scaled<Pair>], constant: Option<(Pair, bool)>) -> (Twofold, Twofold) {
+        let (mut sine, mut cosine) = (Twofold::ZERO, Twofold::ZERO);
+        for lane in 0..LANES {
+            let signed = |size: Pair, minus: bool| if minus { negated(size) } else { size };
+            let term = |&(joint, sign, factor): &Scaled<Pair>| {
+                let q = (self.arguments.of(Argument::Q)[joint][lane], 0.0);
+                signed(factor.map_or(q, |factor| times(factor, q)), sign < 0)
+            };
+            let constant = constant.map(|(size, minus)| signed(size, minus));
+            let sum = terms.iter().map(term).chain(constant).fold((0.0, 0.0), plus);
+            let wide = Wide::from_f64(sum.0).plus(&Wide::from_f64(sum.1));
+            // A float that is no number has no sine.
+            let (s, c) = wide_circle(&wide).map_or(((f64::NAN, 0.0), (f64::NAN, 0.0)), |(s, c)| (pair(&s), pair(&c)));
+            (sine.high[lane], sine.low[lane]) = s;
+            (cosine.high[lane], cosine.low[lane]) = c;
+        }
+        (sine, cosine)
+    }
 }
 
 /// The value of every step; the literals are followed by the circles of constants of angles ([`Program::exact_literals`]).
 pub fn values(program: &Program, literals: &[Pair], arguments: &TwofoldArguments, values: &mut Vec<Twofold>) -> Option<()> {
     values.clear();
     let wave = |angle: &Angle| {
+        if !angle.factors.is_empty() {
+            return arguments
+                .scaled_wave(&angle.scaled(literals), angle.turn.map(|(k, minus)| (literals[program.turns[k]], minus)));
+        }
         let joints = arguments.wave(&angle.terms);
         let Some((k, minus)) = angle.turn else { return joints };
         let at = program.literals.len() + 2 * k;

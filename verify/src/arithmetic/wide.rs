@@ -9,7 +9,7 @@ use crate::element::Element;
 use crate::enclosure::{enclose, sine_cosine_of};
 use crate::float::Arguments;
 use crate::formula::{Formula, Rational};
-use crate::program::{by_addition, Argument, Inputs, Program, Turn};
+use crate::program::{by_addition, Argument, Inputs, Program, Scaled, Turn};
 
 /// A number with 256 bits.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -56,6 +56,18 @@ impl Wide {
             exponent -= lift as i64;
         }
         Wide { negative, exponent, words }
+    }
+
+    /// The fraction that it is.
+    fn exact(&self) -> Rational {
+        let size = self.words.iter().rev().fold(IBig::ZERO, |sum, &word| (sum << 64) + IBig::from(word));
+        let size = if self.negative { -size } else { size };
+        let power = UBig::ONE << self.exponent.unsigned_abs() as usize;
+        if self.exponent < 0 {
+            Rational::from_parts(size, power)
+        } else {
+            Rational::from(size * IBig::from(power))
+        }
     }
 
     /// An integer times a power of two, cut off after 256 bits.
@@ -210,12 +222,22 @@ impl Element for Wide {
 
 /// Sine and cosine of a float.
 fn circle(angle: f64) -> Option<(Wide, Wide)> {
-    if angle == 0.0 {
+    circle_of(&Rational::try_from(angle).ok()?, angle)
+}
+
+/// Sine and cosine of a wide number.
+pub(crate) fn wide_circle(angle: &Wide) -> Option<(Wide, Wide)> {
+    circle_of(&angle.exact(), angle.to_f64())
+}
+
+/// Sine and cosine of an angle of about this size.
+fn circle_of(exact: &Rational, angle: f64) -> Option<(Wide, Wide)> {
+    if exact.is_zero() {
         return Some((ZERO, Wide::from_f64(1.0)));
     }
     // The sine of a small angle as finely as others, relative to its size.
     let fine = 320 + (-angle.abs().log2()).clamp(0.0, 1100.0) as usize;
-    let (sine, cosine, bits) = sine_cosine_of(&Rational::try_from(angle).ok()?, fine)?;
+    let (sine, cosine, bits) = sine_cosine_of(exact, fine)?;
     let of = |n: &IBig| Wide::from_integer(n, -(bits as i64));
     Some((of(&sine), of(&cosine)))
 }
@@ -289,6 +311,21 @@ impl Inputs<Wide> for WideArguments {
 
     fn turned(&self, angle: &[(usize, i64)], turn: &Turn<'_, Wide>) -> (Wide, Wide) {
         by_addition(self.sine_cosine(angle), turn)
+    }
+
+    fn scaled(&self, terms: &[Scaled<Wide>], constant: Option<Wide>) -> (Wide, Wide) {
+        let term = |(joint, sign, factor): &Scaled<Wide>| {
+            let q = Wide::from_f64(self.arguments.q[*joint]);
+            let size = factor.map_or(q, |factor| factor.times(&q));
+            if *sign < 0 {
+                size.negated()
+            } else {
+                size
+            }
+        };
+        let sum = terms.iter().map(term).chain(constant).fold(ZERO, |sum, term| sum.plus(&term));
+        // A float that is no number has no sine.
+        wide_circle(&sum).unwrap_or((ZERO, ZERO))
     }
 
     fn sign(&self, joint: usize) -> Wide {

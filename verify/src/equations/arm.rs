@@ -2,16 +2,18 @@
 
 use std::borrow::Cow;
 use std::cmp::Ordering;
+use std::sync::Arc;
 
 use armgen_description::exact::{Number, Polynomial};
 use armgen_description::kinds::JointKind;
 use armgen_description::manipulator::{self, LinkId, Manipulator};
 
+pub use super::angles::formula;
+use super::angles::Angles;
 use super::state::State;
 use super::vector::{add, dot, product, scale, sub, transpose, Matrix, Vector};
 use crate::arithmetic::Arithmetic;
 use crate::element::Element;
-use crate::formula::Formula;
 use crate::program::Inputs;
 
 /// The pose of a frame in another.
@@ -103,13 +105,13 @@ pub struct Joint<E> {
 pub struct Variable<E> {
     /// Coordinates with their factors.
     pub factors: Vec<(usize, E)>,
-    /// The same factors as integers, of a joint that turns.
+    /// Its angle without the constant as a whole combination of the angles of a state, of a joint that turns; a computed angle has its constant.
     pub turns: Vec<(usize, i64)>,
     /// 1 or -1, the sign of the first factor.
     pub sign: E,
     /// The constant part.
     pub offset: E,
-    /// Its sine and cosine, of a joint that turns; else those of 0.
+    /// Sine and cosine of what its angle has besides, of a joint that turns; else those of 0.
     pub turn: (E, E),
 }
 
@@ -150,15 +152,12 @@ pub struct Arm<E> {
     pub tips: Vec<Tip<E>>,
     /// The coupling of joints; `None` if the variable of each joint is its coordinate.
     pub coupling: Option<Coupling<E>>,
+    /// The angles of its states.
+    pub angles: Arc<Angles>,
     /// 0.
     pub zero: E,
     /// 1.
     pub one: E,
-}
-
-/// A number of the description as a formula; only its text is used.
-pub fn formula(number: &Number) -> Formula {
-    Formula::parse(&number.to_string()).expect("the description prints its numbers as formulas")
 }
 
 struct Builder<'a, K: Arithmetic> {
@@ -234,19 +233,27 @@ impl<K: Arithmetic> Builder<'_, K> {
 
     fn coupling(&self, coupling: &manipulator::Coupling) -> Option<Coupling<K::Element>> {
         let mut variables = Vec::new();
+        let computed = coupling.computed();
         for variable in &coupling.variables {
             let mut factors = Vec::new();
             for (a, factor) in &variable.factors {
                 factors.push((*a, self.number(factor)?));
             }
-            // Validation takes whole numbers below 100 alone.
+            // Whole numbers that are small.
             let turns = variable.factors.iter().map(|(a, factor)| (*a, factor.to_f64() as i64));
-            let (turns, turn) = match &variable.turn {
-                Some([sine, cosine]) => {
+            let (turns, turn) = match (&variable.turn, variable.computed()) {
+                (Some(turn), Some((angle, opposite))) => {
+                    // The states have them: they are constants of the description.
+                    turn.iter().try_for_each(|number| self.arithmetic.coordinate(&formula(number)).map(|_| ()))?;
+                    let place = computed.iter().position(|of| *of == angle)?;
+                    let turns = vec![(coupling.coordinates.len() + place, if opposite { -1 } else { 1 })];
+                    (turns, (self.arithmetic.integer(0), self.arithmetic.integer(1)))
+                }
+                (Some([sine, cosine]), None) => {
                     let circle = |number| self.arithmetic.coordinate(&formula(number));
                     (turns.collect(), (circle(sine)?, circle(cosine)?))
                 }
-                None => (Vec::new(), (self.arithmetic.integer(0), self.arithmetic.integer(1))),
+                (None, _) => (Vec::new(), (self.arithmetic.integer(0), self.arithmetic.integer(1))),
             };
             let is_negative = variable.factors.first().is_some_and(|(_, factor)| factor.sign() == Ordering::Less);
             let sign = self.arithmetic.integer(if is_negative { -1 } else { 1 });
@@ -388,6 +395,7 @@ impl<E: Element> Arm<E> {
             None => None,
         };
         Some(Arm {
+            angles: Arc::new(Angles::of(manipulator)),
             joints,
             gravity: builder.vector(&manipulator.gravity)?,
             tips,
@@ -467,6 +475,7 @@ impl<E: Element> Arm<E> {
                     })
                     .collect(),
             }),
+            angles: self.angles.clone(),
             zero: f(&self.zero),
             one: f(&self.one),
         }
@@ -570,6 +579,7 @@ impl<E: Element> Arm<E> {
         let each = |of: &dyn Fn(usize) -> E| (0..self.joints.len()).map(of).collect::<Vec<E>>();
         Cow::Owned(State {
             angles: coupling.variables.iter().map(angle).collect(),
+            computed: Vec::new(),
             q: self.joint_variables(&state.q),
             dq: self.of_joints(&state.dq),
             ddq: self.of_joints(&state.ddq),

@@ -415,8 +415,9 @@ pub fn base_map<K: Arithmetic>(
     let states = base.len().div_ceil(n) + 3;
     let (mut left, mut right) = (Vec::new(), Vec::new());
     for _ in 0..states {
-        let state =
-            State::draw(arithmetic, n).with_decays(arithmetic, arm.decays()).with_gravity(arithmetic, gravity_is_argument);
+        let state = State::draw(arithmetic, &arm.angles)
+            .with_decays(arithmetic, arm.decays())
+            .with_gravity(arithmetic, gravity_is_argument);
         let state = arm.with_friction(state);
 
         let arm = arm.clone().under(&state.g0);

@@ -1,16 +1,20 @@
 //! A state: the values of all inputs of the equations.
 
+use super::angles::Angles;
 use crate::arithmetic::dual::Dual;
 use crate::arithmetic::Arithmetic;
 use crate::element::Element;
 use crate::float::Arguments;
-use crate::program::{by_addition, Argument, Inputs, Turn};
+use crate::program::{by_addition, Argument, Inputs, Scaled, Turn};
 
 /// Values of joint variables, rates, accelerations, references, torques and parameters.
 #[derive(Clone, Debug)]
 pub struct State<E> {
-    /// Sine and cosine of each joint variable. Those of prismatic joints occur in no equation; no function may use them.
+    /// Sine and cosine of each joint variable, then of each computed angle. Those of prismatic joints occur in no equation; no function may use them
+    /// alone.
     pub angles: Vec<(E, E)>,
+    /// Of each computed angle its coordinates with their factors.
+    pub computed: Vec<Vec<(usize, E)>>,
     /// Joint variables. Revolute ones enter the equations only through sine and cosine, and through the torques of springs.
     pub q: Vec<E>,
     /// Joint rates.
@@ -49,7 +53,26 @@ impl<E: Element> State<E> {
         let Arguments { pi, q, dq, ddq, dqr, ddqr, tau, g0 } = arguments;
         let (stribeck, stribeck_velocities) = (vec![zero.clone(); q.len()], vec![one.clone(); q.len()]);
         let (directions, smooth) = (signs.clone(), vec![false; signs.len()]);
-        State { angles, q, dq, ddq, dqr, ddqr, tau, signs, directions, smooth, stribeck, stribeck_velocities, pi, g0, zero, one }
+        let computed = Vec::new();
+        State {
+            angles,
+            computed,
+            q,
+            dq,
+            ddq,
+            dqr,
+            ddqr,
+            tau,
+            signs,
+            directions,
+            smooth,
+            stribeck,
+            stribeck_velocities,
+            pi,
+            g0,
+            zero,
+            one,
+        }
     }
 
     /// The same with random exponentials for joints whose friction has them.
@@ -75,15 +98,36 @@ impl<E: Element> State<E> {
     }
 
     /// A random state without Stribeck friction; the caller fills in `pi`.
-    pub fn draw<K: Arithmetic<Element = E>>(arithmetic: &mut K, n: usize) -> State<E> {
+    pub fn draw<K: Arithmetic<Element = E>>(arithmetic: &mut K, angles: &Angles) -> State<E> {
+        let n = angles.coordinates();
         let mut many = |_| (0..n).map(|_| arithmetic.draw()).collect::<Vec<E>>();
         let [q, dq, ddq, dqr, ddqr, tau, signs] = [0; 7].map(&mut many);
-        let angles = (0..n).map(|_| arithmetic.draw_angle()).collect();
+        // A factor without a value refuses the arm elsewhere.
+        let computed = angles.factors(arithmetic).unwrap_or_default();
+        let angles = angles.draw(arithmetic);
         let (zero, one) = (arithmetic.integer(0), arithmetic.integer(1));
         let (stribeck, stribeck_velocities) = (vec![zero.clone(); n], vec![one.clone(); n]);
         let [pi, g0] = [Vec::new(), Vec::new()];
         let (directions, smooth) = (signs.clone(), vec![false; signs.len()]);
-        State { angles, q, dq, ddq, dqr, ddqr, tau, signs, directions, smooth, stribeck, stribeck_velocities, pi, g0, zero, one }
+        State {
+            angles,
+            computed,
+            q,
+            dq,
+            ddq,
+            dqr,
+            ddqr,
+            tau,
+            signs,
+            directions,
+            smooth,
+            stribeck,
+            stribeck_velocities,
+            pi,
+            g0,
+            zero,
+            one,
+        }
     }
 
     /// The state as dual numbers: joint variables change with `along`, rates with `rates`, everything else is constant.
@@ -92,10 +136,15 @@ impl<E: Element> State<E> {
         let with = |v: &[E], rates: &[E]| {
             v.iter().zip(rates).map(|(value, rate)| Dual { value: value.clone(), rate: rate.clone() }).collect::<Vec<_>>()
         };
-        let angles = self.angles.iter().zip(along).map(|((s, c), rate)| {
-            let sine = Dual { value: s.clone(), rate: c.times(rate) };
-            (sine, Dual { value: c.clone(), rate: s.times(rate).negated() })
+        let of_sum = |factors: &Vec<(usize, E)>| {
+            factors.iter().fold(self.zero.clone(), |sum, (a, factor)| sum.plus(&factor.times(&along[*a])))
+        };
+        let own = along.iter().cloned().chain(self.computed.iter().map(of_sum));
+        let angles = self.angles.iter().zip(own).map(|((s, c), rate)| {
+            let sine = Dual { value: s.clone(), rate: c.times(&rate) };
+            (sine, Dual { value: c.clone(), rate: s.times(&rate).negated() })
         });
+        let still_factors = |factors: &Vec<(usize, E)>| factors.iter().map(|(a, factor)| (*a, Dual::constant(factor))).collect();
         // d/dt exp(-|dq| / v) = -sign(dq) ddq exp(-|dq| / v) / v
         let fading = |(i, value): (usize, &E)| {
             let by_rate = self.signs[i].times(value).over(&self.stribeck_velocities[i]).unwrap_or_else(|| self.zero.clone());
@@ -114,6 +163,7 @@ impl<E: Element> State<E> {
             stribeck: self.stribeck.iter().enumerate().map(fading).collect(),
             stribeck_velocities: still(&self.stribeck_velocities),
             angles: angles.collect(),
+            computed: self.computed.iter().map(still_factors).collect(),
             q: with(&self.q, along),
             dq: with(&self.dq, rates),
             ddq: still(&self.ddq),
@@ -137,6 +187,9 @@ impl<E> State<E> {
         let all = |values: Vec<E>| values.into_iter().map(of).collect::<Vec<F>>();
         State {
             angles: self.angles.into_iter().map(|(sine, cosine)| (of(sine), of(cosine))).collect(),
+            computed: (self.computed.into_iter())
+                .map(|factors| factors.into_iter().map(|(a, factor)| (a, of(factor))).collect())
+                .collect(),
             q: all(self.q),
             dq: all(self.dq),
             ddq: all(self.ddq),
@@ -195,5 +248,14 @@ impl<E: Element> Inputs<E> for State<E> {
 
     fn turned(&self, angle: &[(usize, i64)], turn: &Turn<'_, E>) -> (E, E) {
         by_addition(self.sine_cosine(angle), turn)
+    }
+
+    /// Of no joint variable of the description: no function has it ([`Angles::name`]). A point off the circle equals nothing.
+    fn scaled(&self, _: &[Scaled<E>], _: Option<E>) -> (E, E) {
+        (self.zero.clone(), self.zero.clone())
+    }
+
+    fn computed(&self, angle: usize) -> Option<(E, E)> {
+        self.angles.get(self.q.len() + angle).cloned()
     }
 }

@@ -12,7 +12,8 @@
 //! result = sum | [ result, ... ] | ([ ... ], [ ... ]) | EquationsOfMotion { inertia: ..., coriolis: ..., gravity: ... }
 //! sum    = product { (+ | -) product }      product = factor { (* | /) factor }      factor = [-] primary
 //! primary = number | name | entry | sign(dq[index]) | Real::mul_add(sum, sum, sum) | ( sum )
-//! angle  = entry { (+ | -) entry } [ (+ | -) number ]               added joints first, each kind in their order, each joint once
+//! angle  = term { (+ | -) term } [ (+ | -) number ]                 added joints first, each kind in their order, each joint once
+//! term   = [ number * ] entry
 //! ```
 //!
 //! A name is a letter s, c or t, a digit, then digits, small letters and `_`. No keyword, item or prelude has such a name, and no name occurs
@@ -323,7 +324,7 @@ impl<'a> Compiler<'a, '_, '_> {
         Ok(())
     }
 
-    /// `q[1] + q[2] - q[3] + 0.5`: a sum of joint variables and a constant. Its steps belong to the function.
+    /// `q[1] + 0.7 * q[2] - q[3] + 0.5`: a sum of joint variables, perhaps times numbers, and a constant. Its steps belong to the function.
     fn angle(&mut self) -> Result<Angle, Fault> {
         let mut angle = Angle::default();
         let mut sum = None;
@@ -333,14 +334,22 @@ impl<'a> Compiler<'a, '_, '_> {
                 self.parser.expect("+")?;
             }
             let place = self.parser.peek();
-            let term = if place.kind == Kind::Number && sum.is_some() {
+            let mut scale = None;
+            if place.kind == Kind::Number {
                 let step = self.literal()?;
                 let literal = self.program.literals.len() - 1;
-                self.program.turns.push(literal);
-                angle.turn = Some((self.program.turns.len() - 1, minus));
+                if sum.is_some() && !self.parser.is("*") {
+                    self.program.turns.push(literal);
+                    angle.turn = Some((self.program.turns.len() - 1, minus));
+                } else {
+                    self.parser.expect("*")?;
+                }
+                scale = Some((step, literal));
+            }
+            let term = if let (Some((step, _)), Some(_)) = (scale, angle.turn) {
                 step
             } else {
-                let (argument, joint, step) = self.entry()?;
+                let (argument, joint, entry) = self.entry()?;
                 let factor = if minus { -1 } else { 1 };
                 // Rounding depends on the order, so the order is fixed: added joints first.
                 let follows = angle.terms.last().is_none_or(|&(last, before)| (-before, last) < (-factor, joint));
@@ -349,7 +358,11 @@ impl<'a> Compiler<'a, '_, '_> {
                     return Err(place.fault("an angle is a sum of joint variables in their order, those taken away last"));
                 }
                 angle.terms.push((joint, factor));
-                step
+                angle.factors.push(scale.map(|(_, literal)| literal));
+                match scale {
+                    Some((step, _)) => self.push(Step::Multiply(step, entry))?,
+                    None => entry,
+                }
             };
             sum = Some(match sum {
                 None => term,
@@ -357,9 +370,7 @@ impl<'a> Compiler<'a, '_, '_> {
                 Some(before) => self.push(Step::Add(before, term))?,
             });
             if angle.turn.is_some() || !(self.parser.is("+") || self.parser.is("-")) {
-                // Programs store joints by number.
-                angle.terms.sort_unstable();
-                return Ok(angle);
+                return Ok(angle.sorted());
             }
         }
     }

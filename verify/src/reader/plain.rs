@@ -7,7 +7,8 @@
 //! ```text
 //! sum     = product { (" + " | " - ") product }          product = factor { (" * " | " / ") factor }
 //! factor  = ["-"] primary                                primary = number | name | entry | sign(entry) | "(" sum ")"
-//! angle   = entry { (" + " | " - ") entry } [ (" + " | " - ") number ]
+//! angle   = term { (" + " | " - ") term } [ (" + " | " - ") number ]
+//! term    = [ number " * " ] entry
 //! ```
 
 mod body;

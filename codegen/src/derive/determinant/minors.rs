@@ -93,6 +93,9 @@ pub fn minors(model: &Model, view: View<'_>) -> Result<Minors, NoMinors> {
     let jacobian = if manipulator.task.len() == 6 { twists(&mut pool, &arm) } else { geometric_jacobian(&mut pool, &arm) };
     let (mut pool, jacobian) = in_coordinates(pool, &arm, jacobian);
     let task: Vec<Vec<ExprId>> = manipulator.task.iter().map(|row| jacobian[row.index()].clone()).collect();
+    if pool.field().computed().is_some() {
+        return Err(NoMinors::TooLong(Vec::new()));
+    }
     let all = without_each(&mut pool, &task);
     let (mut pool, task) = without_fixed(&mut pool, &all, &task);
     let values = without_each(&mut pool, &task);

@@ -6,7 +6,7 @@
 //! the sines take. A single angle, and in f32 each of two, gains nothing from vectors and is computed by itself; in f64 an unused
 //! sine or cosine is left out.
 
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
 
 use armgen_elementary::texts::{FAST_F32, FAST_F64};
 use proc_macro2::{TokenStream, TokenTree};
@@ -15,9 +15,11 @@ use syn::Item;
 
 use super::literal::literal;
 use super::signature::{self, usize_literal};
+use crate::exact::Number;
 use crate::kinds::Scalar;
 use crate::program::listing::{angles, Angle, Name};
 use crate::program::{Function, Module, Trig};
+use crate::ring::field::computed::ComputedAngle;
 use crate::ring::Symbol;
 
 /// An angle that a function asks for, and the names of its sine and cosine.
@@ -25,26 +27,30 @@ struct Asked {
     angle: Angle,
     /// The literal that it adds, with its sign.
     turn: Option<TokenStream>,
+    /// The literals that its joint variables are multiplied by.
+    factors: Vec<Option<TokenStream>>,
     sine: TokenStream,
     cosine: TokenStream,
 }
 
 /// The angles that a function asks for. `turn` is what turned sums add.
-fn asked(symbols: &[Symbol], turn: Option<&TokenStream>) -> Vec<Asked> {
+fn asked(symbols: &[Symbol], computed: &BTreeMap<u16, ComputedAngle>, turn: Option<&Number>, scalar: Scalar) -> Vec<Asked> {
     let name = |name: Option<Name>| name.map_or(quote!(_), |name| signature::name(name).into_token_stream());
     let one = |angle: Angle| Asked {
-        turn: turn.filter(|_| angle.turned).cloned(),
+        turn: angle.constant(turn).map(|turn| literal(turn, scalar)),
+        factors: angle.factors().iter().map(|factor| factor.as_ref().map(|factor| literal(factor, scalar))).collect(),
         sine: name(angle.sine),
         cosine: name(angle.cosine),
         angle,
     };
-    angles(symbols).into_iter().map(one).collect()
+    angles(symbols, computed).into_iter().map(one).collect()
 }
 
 impl Asked {
-    /// `+ q[2]`, `- q[3]`, `+ 0.7`: what follows the first joint variable.
-    fn more(&self) -> Vec<(bool, TokenStream)> {
-        let joints = self.angle.terms.iter().skip(1).map(|&(i, minus)| (minus, entry(i)));
+    /// `+ q[2]`, `- 0.3 * q[3]`, `+ 0.7`: what follows the first joint variable; `entry` writes a joint variable.
+    fn more(&self, entry: impl Fn(u16) -> TokenStream) -> Vec<(bool, TokenStream)> {
+        let joints =
+            self.angle.terms.iter().zip(&self.factors).skip(1).map(|(&(i, minus), factor)| (minus, scaled(factor, entry(i))));
         let turn = self.turn.iter().map(|literal| {
             let mut tokens = literal.clone().into_iter().peekable();
             let minus = tokens.next_if(|token| token.to_string() == "-").is_some();
@@ -55,8 +61,8 @@ impl Asked {
 
     /// `q[1] + q[2]`
     fn text(&self) -> TokenStream {
-        let mut text = self.first();
-        for (minus, term) in self.more() {
+        let mut text = scaled(&self.factors[0], self.first());
+        for (minus, term) in self.more(entry) {
             text.extend(if minus { quote!(- #term) } else { quote!(+ #term) });
         }
         text
@@ -78,19 +84,27 @@ impl Asked {
     }
 }
 
+/// `q[1]`, `0.785 * q[1]`
+fn scaled(factor: &Option<TokenStream>, entry: TokenStream) -> TokenStream {
+    match factor {
+        Some(factor) => quote!(#factor * #entry),
+        None => entry,
+    }
+}
+
 fn entry(i: u16) -> TokenStream {
     let index = usize_literal(usize::from(i));
     quote!(q[#index])
 }
 
-/// The literal that turned sums of a module add.
-fn turn_of(module: &Module) -> Option<TokenStream> {
-    module.turn.as_ref().map(|angle| literal(angle, module.scalar))
+/// The angles that a function of a module asks for.
+fn asked_of(module: &Module, function: &Function) -> Vec<Asked> {
+    asked(&function.symbols(), &function.computed, module.turn.as_ref(), module.scalar)
 }
 
 /// The lines that give `s1`, `c1` and so on for the angles among the symbols of a function.
 pub(super) fn lines(module: &Module, function: &Function) -> Vec<TokenStream> {
-    let asked = asked(&function.symbols(), turn_of(module).as_ref());
+    let asked = asked_of(module, function);
     match module.trig {
         Trig::Libm | Trig::Std => {
             let line = |asked: &Asked| {
@@ -131,16 +145,21 @@ fn together(asked: &[Asked], scalar: Scalar) -> Vec<TokenStream> {
 
 /// The lines that give the sines and cosines of all angles as arrays of lanes, and those in the loop over lanes `k` that name them `s1`, `c1` and so on.
 pub(super) fn lines_of_lanes(module: &Module, function: &Function) -> (Vec<TokenStream>, Vec<TokenStream>) {
-    let turn = turn_of(module);
-    let asked = asked(&function.symbols(), turn.as_ref());
+    let asked = asked_of(module, function);
     if asked.is_empty() {
         return (Vec::new(), Vec::new());
     }
     let (mut added, mut inside) = (Vec::new(), Vec::new());
     for (at, asked) in asked.iter().enumerate() {
-        let (at, joints) = (usize_literal(at), asked.angle.terms.len());
-        for ((minus, term), i) in asked.more().into_iter().zip(1..) {
-            let term = if i < joints { quote!(#term[k]) } else { term };
+        let at = usize_literal(at);
+        if let Some(factor) = &asked.factors[0] {
+            added.push(quote!(angles[#at][k] *= #factor;));
+        }
+        let lane = |i: u16| {
+            let entry = entry(i);
+            quote!(#entry[k])
+        };
+        for (minus, term) in asked.more(lane) {
             added.push(if minus { quote!(angles[#at][k] -= #term;) } else { quote!(angles[#at][k] += #term;) });
         }
         for (name, from) in [(&asked.sine, quote!(sines)), (&asked.cosine, quote!(cosines))] {
@@ -260,6 +279,7 @@ fn names(text: TokenStream) -> BTreeSet<String> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::exact::Rational;
     use crate::ring::AngleSum;
 
     #[track_caller]
@@ -269,7 +289,8 @@ mod tests {
 
     #[track_caller]
     fn check_in(scalar: Scalar, symbols: &[Symbol], expected: &[&str]) {
-        let lines = together(&asked(symbols, Some(&quote!(-0.5))), scalar);
+        let turn = Number::from(Rational::from_parts((-1).into(), 2u8.into()));
+        let lines = together(&asked(symbols, &BTreeMap::new(), Some(&turn), scalar), scalar);
         let lines: Vec<String> = lines.iter().map(|line| line.to_string().replace(' ', "")).collect();
         let expected: Vec<String> = expected.iter().map(|line| line.replace(' ', "")).collect();
         assert_eq!(lines, expected);
@@ -342,7 +363,7 @@ mod tests {
     fn only_what_is_called_is_taken_in() {
         let items = |scalar, count: u8, of: fn(u8) -> Vec<Symbol>| {
             let symbols: Vec<Symbol> = (0..count).flat_map(of).collect();
-            let lines = together(&asked(&symbols, None), scalar);
+            let lines = together(&asked(&symbols, &BTreeMap::new(), None, scalar), scalar);
             let file: syn::File = syn::parse2(fast(scalar, quote!(#(#lines)*))).expect("a file");
             file.items.iter().map(name).collect::<Vec<_>>()
         };

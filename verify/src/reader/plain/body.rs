@@ -206,13 +206,23 @@ impl<'a, 's> Body<'a, 's> {
                 break;
             }
             let start = *place;
-            let term = if sum.is_some() && place.rest.starts_with(|c: char| c.is_ascii_digit()) {
+            let mut scale = None;
+            if place.rest.starts_with(|c: char| c.is_ascii_digit()) {
                 let step = self.literal(place)?;
-                self.program.turns.push(self.program.literals.len() - 1);
-                angle.turn = Some((self.program.turns.len() - 1, minus));
+                let literal = self.program.literals.len() - 1;
+                if !place.eat(" * ") {
+                    if sum.is_none() {
+                        return Err(start.fault("an angle begins with a joint variable"));
+                    }
+                    self.program.turns.push(literal);
+                    angle.turn = Some((self.program.turns.len() - 1, minus));
+                }
+                scale = Some((step, literal));
+            }
+            let term = if let (Some((step, _)), Some(_)) = (scale, angle.turn) {
                 step
             } else {
-                let (argument, joint, step) = self.entry(place)?;
+                let (argument, joint, entry) = self.entry(place)?;
                 let factor = if minus { -1 } else { 1 };
                 // Rounding depends on the order, so the order is fixed: added joints first.
                 let follows = angle.terms.last().is_none_or(|&(last, before)| (-before, last) < (-factor, joint));
@@ -221,7 +231,11 @@ impl<'a, 's> Body<'a, 's> {
                     return Err(start.fault("an angle goes on with joint variables in their order, those taken away last"));
                 }
                 angle.terms.push((joint, factor));
-                step
+                angle.factors.push(scale.map(|(_, literal)| literal));
+                match scale {
+                    Some((step, _)) => self.push(Step::Multiply(step, entry), place)?,
+                    None => entry,
+                }
             };
             sum = Some(match sum {
                 None => term,
@@ -232,8 +246,7 @@ impl<'a, 's> Body<'a, 's> {
                 break;
             }
         }
-        angle.terms.sort_unstable();
-        Ok(angle)
+        Ok(angle.sorted())
     }
 
     fn literal(&mut self, place: &mut Place<'a>) -> Result<usize, Fault> {
