@@ -3,6 +3,7 @@
 //! ```text
 //! file.rs    the file of a path -> points or pieces, limits, ends
 //! curve.rs   points -> pieces
+//! tip.rs     a path of the end effector -> pieces
 //! arm.rs     the description, executed
 //! faults.rs  why a path cannot be timed, at its place in the file
 //! result.rs  the motion as numbers, CSV and JSON
@@ -17,6 +18,7 @@ mod curve;
 mod faults;
 mod file;
 mod result;
+mod tip;
 
 use std::path::{Path, PathBuf};
 use std::time::Duration;
@@ -32,7 +34,7 @@ use crate::output::write_other;
 use crate::{input, terminal, DONE, FAULTY, UNREADABLE};
 use arm::Arm;
 use faults::Faults;
-use file::File;
+use file::{File, Form, Tip};
 use result::Motion;
 
 /// How a path is timed, and what is written.
@@ -140,7 +142,14 @@ impl Job<'_> {
     fn run<const N: usize>(&self, diagnostics: &mut Diagnostics) -> Result<Option<Motion>, u8> {
         let arm: Arm<N> = arm(self.description, self.manipulator)?;
         let form = self.file.form.as_ref().expect("a file that is timed has a path");
-        let (pieces, origins): (Vec<Piece<f64, N>>, Vec<curve::Origin>) = curve::pieces(form).into_iter().unzip();
+        let (pieces, away) = match &self.file.tip {
+            None => (curve::pieces(form), None),
+            Some(tip) => match self.along(tip, form, diagnostics) {
+                Some((pieces, away)) => (pieces, Some(away)),
+                None => return Ok(None),
+            },
+        };
+        let (pieces, origins): (Vec<Piece<f64, N>>, Vec<curve::Origin>) = pieces.into_iter().unzip();
         let faults = Faults { manipulator: self.manipulator, file: self.file, form, origins: &origins };
         faults.of_corners(diagnostics);
         faults.of_positions(&pieces, diagnostics);
@@ -180,7 +189,40 @@ impl Job<'_> {
             ));
             return Err(UNREADABLE);
         }
-        Ok(Some(result::motion(self, &arm, &path, &timing)))
+        let mut motion = result::motion(self, &arm, &path, &timing);
+        if let Some(tip::Distance { metres, radians }) = away {
+            motion.text += &format!(
+                "\nThe tip leaves its path by at most {metres:.1e} m and {radians:.1e} rad, at seven places of each piece.\n"
+            );
+        }
+        Ok(Some(motion))
+    }
+
+    /// The joint spline along a path of the tip, and how far it is from it; `None` after a diagnostic.
+    fn along<const N: usize>(
+        &self,
+        tip: &Tip,
+        form: &Form,
+        diagnostics: &mut Diagnostics,
+    ) -> Option<(curve::Pieces<N>, tip::Distance)> {
+        let curve = curve::pieces::<6>(form);
+        let (pieces, origins): (Vec<Piece<f64, 6>>, Vec<curve::Origin>) = curve.iter().copied().unzip();
+        let faults = Faults { manipulator: self.manipulator, file: self.file, form, origins: &origins };
+        faults.of_corners(diagnostics);
+        if diagnostics.has_errors() {
+            return None;
+        }
+        if let Err(error) = JointPath::new(pieces.clone()) {
+            diagnostics.push(faults.of_path(&pieces, &error));
+            return None;
+        }
+        match with_spinner("following the tip", || tip::spline(self.manipulator, tip, &curve)) {
+            Ok(found) => Some(found),
+            Err(fault) => {
+                diagnostics.push(faults.of_tip(&fault, &pieces));
+                None
+            }
+        }
     }
 
     fn joint(&self, joint: usize) -> &str {

@@ -35,6 +35,18 @@ joints:
      link: {mass: 1, com: [0, 0, 0], inertia: {}}}
 ";
 
+/// Two links of 1 m in a horizontal plane.
+const PLANAR: &str = "name: planar
+convention: standard
+gravity: [0, 0, -9.81]
+task: [x, y]
+joints:
+  - {name: shoulder, type: revolute, a: 1, alpha: 0, d: 0, theta: 0, limits: {velocity: 3, effort: 40},
+     link: {mass: 3, com: [-0.5, 0, 0], inertia: {zz: 0.2}}}
+  - {name: elbow, type: revolute, a: 1, alpha: 0, d: 0, theta: 0, limits: {velocity: 3, effort: 20},
+     link: {mass: 2, com: [-0.5, 0, 0], inertia: {zz: 0.1}}}
+";
+
 const SCARA_PATH: &str = "points: [[0, 0.5, 0.1, 0], [1, 1, 0.2, 1], [-0.5, 1.5, 0, 2]]
 limits: {velocity: [4, 5, 1.2, 12], effort: [250, 120, 400, 30]}
 ";
@@ -142,6 +154,33 @@ fn corners_are_passed_at_the_distance_of_the_blend() {
     // A blend that does not fit takes half of the lines.
     let (_, _, json) = timed("blend-large", CRANE, &path.replace("0.05", "7"), &[], 0);
     assert_eq!(numbers(&json["path"]["knots"]), [0.0, 0.5, 1.5, 2.0]);
+}
+
+/// The tip stays on its line and on its rounded corner, by closed forms, on the branch of the start; a second proof holds.
+#[test]
+fn the_tip_follows_its_path() {
+    let path = "tip: {points: [[1, 0.6, 0], [1, -0.6, 0], [0.4, -0.6, 0]], start: [START], tolerance: 1e-5}
+curve: lines
+blend: 0.05
+";
+    for (name, start, side) in [("tip-left", "-0.3, 1.8", 1.0), ("tip-right", "1.5, -1.8", -1.0)] {
+        let (text, _, json) = timed(name, PLANAR, &path.replace("START", start), &["--gap", "0.01"], 0);
+        assert!(text.contains("The tip leaves its path by at most"), "{text}");
+        let (shoulder, elbow) = (pieces(&json, 0), pieces(&json, 1));
+        let (mut corner, mut count) = (f64::INFINITY, 0);
+        for (a, b) in shoulder.iter().zip(&elbow) {
+            for ([q1, ..], [q2, ..]) in a.iter().zip(b) {
+                let [x, y] = [q1.cos() + (q1 + q2).cos(), q1.sin() + (q1 + q2).sin()];
+                assert!(q2 * side > 0.0, "{name}: the elbow turned over, {q2}");
+                let off = (x - 1.0).abs().min((y + 0.6).abs());
+                let near = (x - 1.0).hypot(y + 0.6);
+                assert!(off < 1e-5 || near < 0.3, "{name}: {x} {y}");
+                (corner, count) = (corner.min(near), count + 1);
+            }
+        }
+        assert!((0.05 - 1e-5..0.08).contains(&corner) && count > 30, "{name}: {corner} {count}");
+        assert_eq!(refused(name, PLANAR, &json), "", "{name}");
+    }
 }
 
 #[test]
@@ -261,6 +300,25 @@ fn faults() -> Vec<(&'static str, String, String, Vec<&'static str>, Vec<&'stati
             vec!["the corner of point 2: the motion slows down to"],
         ),
         ("other-robot", of(SLIDE, "robot: panda\npoints: [[0], [1]]\n"), "", vec!["`panda`", "path.yaml:1:8"]),
+        // Of the tip.
+        (
+            "singular",
+            of(PLANAR, "tip: {points: [[1, 0.5, 0], [2, 0, 0]], start: [-0.5, 2]}\n"),
+            "",
+            vec!["at s = 1.11803, point 2", "least singular value of J", "path.yaml:1:"],
+        ),
+        (
+            "unreachable",
+            of(PLANAR, "tip: {points: [[1, 0, 0], [3.2, 0, 0]], start: [-1, 2]}\n"),
+            "",
+            vec!["at s = 1, between points 1 and 2", "1.2 m and 0 rad"],
+        ),
+        (
+            "tolerance",
+            of(PLANAR, "tip: {points: [[1, 0, 0], [1, 1, 0]], start: [-1, 2], tolerance: 1e-18}\n"),
+            "",
+            vec!["between points 1 and 2", "raise `tolerance`"],
+        ),
         // Of a description.
         (
             "smooth-friction",

@@ -37,6 +37,12 @@ armgen_codegen::codes! {
         TooCoarse Error "too-coarse",
         /// The torque that holds the arm at the start is beyond its limit.
         StartNotHeld Warning "start-not-held",
+        /// On the path of the tip J has no inverse.
+        Singular Error "singular",
+        /// No joint values on this branch reach the tip's path.
+        Unreachable Error "unreachable",
+        /// No joint spline comes as near to the tip's path as wished.
+        Tolerance Error "tolerance",
         /// The segments are used up before the gap is as small as wished.
         Gap Warning "gap",
         /// A place that the motion passes far more slowly than those around it.

@@ -12,6 +12,7 @@ use super::code::Code;
 use super::curve::{corners, Origin};
 use super::file::{Curve, File, Form, Place};
 use super::result::{gap_of, short};
+use super::tip::{Distance, Fault, FaultKind};
 
 /// What messages need of a path and its file.
 pub(super) struct Faults<'a> {
@@ -67,7 +68,9 @@ impl Faults<'_> {
                 let of = pieces.get(piece);
                 let near = |end: f64| of.is_some_and(|piece| (s - end).abs() <= 1e-6 * piece.length);
                 // With blends the pieces of lines end beside the points.
-                let meets = |other: Option<&Origin>| !matches!(other, Some(Origin::Corner(_)));
+                // A piece of the tip's path is a spline of many.
+                let meets =
+                    |other: Option<&Origin>| !matches!(other, Some(Origin::Corner(_))) && other != self.origins.get(piece);
                 let before = piece.checked_sub(1).and_then(|before| self.origins.get(before));
                 if of.is_some_and(|of| near(of.start)) && meets(before) {
                     (format!("{at}, point {}", i + 1), i)
@@ -195,6 +198,34 @@ impl Faults<'_> {
             names[0].trim_matches('`')
         );
         diagnostics.push(Diagnostic::new(Code::MissingLimit, self.file.limits_at, message, "", help));
+    }
+
+    /// A path of the tip without a joint spline.
+    pub(super) fn of_tip(&self, fault: &Fault, curve: &[Piece<f64, 6>]) -> Diagnostic {
+        let away = |off: &Distance| format!("{} m and {} rad", short(off.metres), short(off.radians));
+        let (code, reason, help) = match &fault.kind {
+            FaultKind::Unreachable { off } => (
+                AnyCode::from(Code::Unreachable),
+                format!("no joint values reach the path from here on: {} are left to the end of this piece", away(off)),
+                "the arm's reach on this branch ends here: lead the path elsewhere, or choose another `start`",
+            ),
+            FaultKind::Singular { least, needed } => (
+                Code::Singular.into(),
+                format!("the posture is singular: the least singular value of J is {least:.2e}, below {needed:.2e}"),
+                "joints would have to move infinitely fast: lead the path elsewhere, or give it by joints there",
+            ),
+            FaultKind::Tolerance { off } => (
+                Code::Tolerance.into(),
+                format!("the finest joint spline still leaves the path by {}", away(off)),
+                "raise `tolerance`, or lead the path farther from a singular posture",
+            ),
+            FaultKind::Redundant { rows } => (
+                Shared::WrongLength.into(),
+                format!("the task of the description has {rows} rows, the arm has {} joints", self.manipulator.dof()),
+                "the tip determines the joints only where both are the same: give the path by joints, `points`",
+            ),
+        };
+        self.at((fault.s, fault.piece, curve), code, reason, help)
     }
 
     /// Pieces that are no path.

@@ -55,11 +55,22 @@ pub(super) struct Limits {
     pub(super) effort: Vec<[f64; 2]>,
 }
 
+/// A path of the end effector: [`Form::Points`] has its poses, six numbers each.
+#[derive(Clone, Debug)]
+pub(super) struct Tip {
+    /// Joint values near the first pose: the branch, and the orientation that rotation vectors count from.
+    pub(super) start: Vec<f64>,
+    /// How far the joint spline may be from the path, m and rad.
+    pub(super) tolerance: f64,
+}
+
 /// A path as its file gives it, with limits of the description where the file has none.
 #[derive(Clone, Debug)]
 pub(super) struct File {
     /// `None` where the file may have limits alone, and has no more.
     pub(super) form: Option<Form>,
+    /// Of a path of the end effector.
+    pub(super) tip: Option<Tip>,
     pub(super) limits: Limits,
     /// ds at both ends.
     pub(super) speed: [f64; 2],
@@ -71,16 +82,24 @@ pub(super) struct File {
     pub(super) ends_at: Span,
 }
 
-const KEYS: [Key; 7] = [
+const KEYS: [Key; 8] = [
     optional("robot"),
     optional("points"),
     optional("curve"),
     optional("blend"),
     optional("pieces"),
+    optional("tip"),
     optional("limits"),
     optional("ends"),
 ];
 const PIECES: [Key; 2] = [required("knots", "knots: [0, 1]"), required("coefficients", "coefficients: [[[0, 1], [0.5, -1]]]")];
+const TIP: [Key; 3] = [
+    required("points", "points: [[0.5, 0.1, 0.3], [0.5, 0.4, 0.3]]"),
+    required("start", "start: [0, 0.5]"),
+    optional("tolerance"),
+];
+/// Of the tip, m and rad.
+const TOLERANCE: f64 = 1e-4;
 const LIMITS: [Key; 3] = [optional("velocity"), optional("acceleration"), optional("effort")];
 const ENDS: [Key; 2] = [optional("speed"), optional("hold")];
 const NUMBER: &str = "write for instance `0.5`, `1e-3`, `pi/2` or `deg(30)`";
@@ -160,11 +179,11 @@ impl Reading<'_> {
                 }
             }
         }
-        let form = self.form(fields, path);
-        File { form, limits, speed, hold, limits_at: fields.place("limits"), ends_at: fields.place("ends") }
+        let (form, tip) = self.form(fields, path).map_or((None, None), |(form, tip)| (Some(form), tip));
+        File { form, tip, limits, speed, hold, limits_at: fields.place("limits"), ends_at: fields.place("ends") }
     }
 
-    fn form(&mut self, fields: &Fields<'_>, path: bool) -> Option<Form> {
+    fn form(&mut self, fields: &Fields<'_>, path: bool) -> Option<(Form, Option<Tip>)> {
         let mut curve = Curve::default();
         if let Some((key, node)) = fields.get("curve") {
             let words = [("spline", Curve::Spline), ("lines", Curve::Lines), ("through", Curve::Through)];
@@ -184,29 +203,71 @@ impl Reading<'_> {
                 self.reader.report(Code::UnknownWord, key, "only `curve: lines` has corners to blend", "", help);
             }
         }
-        match (fields.get("points"), fields.get("pieces")) {
-            (Some((key, node)), None) => self.points(node, key, curve, blend),
-            (None, Some((key, node))) => self.pieces(node, key),
-            (None, None) if !path => None,
-            (points, _) => {
-                let message = if points.is_some() { "the path has `points` and `pieces`" } else { "the file has no path" };
-                let help = "give `points: [[0, 0.5], [1, -0.5]]`, or `pieces: {knots: [...], coefficients: [...]}`: one of both";
-                let at = points.map_or(fields.at(), |(key, _)| key);
-                self.reader.report(Code::MissingPath, at, message, "", help);
+        match [fields.get("points"), fields.get("pieces"), fields.get("tip")] {
+            [Some((key, node)), None, None] => self.points(node, key, curve, blend, false).map(|form| (form, None)),
+            [None, Some((key, node)), None] => self.pieces(node, key).map(|form| (form, None)),
+            [None, None, Some((key, node))] => self.tip(node, key, curve, blend),
+            [None, None, None] if !path => None,
+            all => {
+                let first = all.into_iter().flatten().next();
+                let message = if first.is_some() { "the file has more than one path" } else { "the file has no path" };
+                let help = "give one of `points: [[0, 0.5], [1, -0.5]]`, `pieces: {knots: [...], coefficients: [...]}` and \
+                            `tip: {points: [...], start: [...]}`";
+                self.reader.report(Code::MissingPath, first.map_or(fields.at(), |(key, _)| key), message, "", help);
                 None
             }
         }
     }
 
-    fn points(&mut self, node: &Node, key: Span, curve: Curve, blend: Option<f64>) -> Option<Form> {
-        let help = "write a list of joint values for each point: `points: [[0, 0.5], [1, -0.5]]`";
-        let list = self.reader.list(node, key, "points", "a list of points", help)?;
+    fn tip(&mut self, node: &Node, key: Span, curve: Curve, blend: Option<f64>) -> Option<(Form, Option<Tip>)> {
+        let fields = self.reader.mapping(node, "`tip`", key, &TIP)?;
+        if !self.arm.tips.is_empty() {
+            let help = "give the path of its joints: `points: [[0, 0.5], [1, -0.5]]`";
+            self.reader.report(Code::MissingPath, key, "the arm has several end effectors", "", help);
+        }
         let dof = self.arm.dof();
+        let start = fields.get("start").and_then(|(key, node)| {
+            self.numbers(node, key, "start", Some((dof, "one value per joint, rad or m: the posture near the first point")))
+        });
+        let mut tolerance = TOLERANCE;
+        if let Some((key, node)) = fields.get("tolerance") {
+            tolerance = self.number(node, key, "tolerance")?;
+            if tolerance <= 0.0 {
+                let help = "write how far the tip may be from its path, m and rad";
+                self.reader.report(Code::NotPositive, node.span, "the tolerance is not above zero", "", help);
+            }
+        }
+        let form = fields.get("points").and_then(|(key, node)| self.points(node, key, curve, blend, true));
+        Some((form?, Some(Tip { start: start?, tolerance })))
+    }
+
+    /// Points of joints, or of the tip.
+    fn points(&mut self, node: &Node, key: Span, curve: Curve, blend: Option<f64>, of_tip: bool) -> Option<Form> {
+        let (each, help) = if of_tip {
+            (
+                "x, y, z in m, or these and a rotation vector in rad",
+                "write a position of the tip for each point: `[[0.5, 0.1, 0.3]]`",
+            )
+        } else {
+            ("one value per joint, rad or m", "write a list of joint values for each point: `points: [[0, 0.5], [1, -0.5]]`")
+        };
+        let list = self.reader.list(node, key, "points", "a list of points", help)?;
+        let length = |point: &Node| match &point.kind {
+            _ if !of_tip => self.arm.dof(),
+            Kind::List(items) if items.len() == 6 => 6,
+            _ => 3,
+        };
+        let lengths: Vec<usize> = list.iter().map(length).collect();
         let (mut points, mut places) = (Vec::new(), Vec::new());
         let mut complete = true;
         for (i, point) in list.iter().enumerate() {
             let name = format!("point {}", i + 1);
-            match self.numbers(point, point.span, &name, Some((dof, "one value per joint, rad or m"))) {
+            match self.numbers(point, point.span, &name, Some((lengths[i], each))) {
+                Some(mut q) if of_tip => {
+                    q.resize(6, 0.0);
+                    points.push(q);
+                    places.push(Place { span: point.span, joints: Vec::new() });
+                }
                 Some(q) => {
                     points.push(q);
                     places.push(Place::of(point));
