@@ -422,7 +422,6 @@ fn hostile_couplings_get_an_answer() {
     assert!(!codes(&long).is_empty());
     let roots = line(32, |i| if i == 0 { String::new() } else { follows(i - 1, "sqrt(2) + sqrt(3) + pi") });
     assert_eq!(codes(&roots), ["too-complex"]);
-    let turning = |factor| codes(&after(factor).replace("prismatic", "revolute"));
     // Point masses on the axes: some joints move no inertia.
     for factor in ["2", "2/3", "0.785", "sqrt(2)", "1/7", &digits] {
         let codes =
