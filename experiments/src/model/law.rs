@@ -17,6 +17,8 @@ pub enum ControlLawKind {
     Adaptive,
     /// Inverse dynamics in the operational space, with integral action.
     OperationalSpace,
+    /// The same within limits of torque, position, rate and acceleration.
+    Limited,
 }
 
 /// The dimension of a gain.
@@ -53,12 +55,13 @@ const fn or_zero(key: &'static str, per: Per) -> Gain {
 
 impl ControlLawKind {
     /// All of them.
-    pub const ALL: [ControlLawKind; 5] = [
+    pub const ALL: [ControlLawKind; 6] = [
         ControlLawKind::PdGravity,
         ControlLawKind::InverseDynamics,
         ControlLawKind::Robust,
         ControlLawKind::Adaptive,
         ControlLawKind::OperationalSpace,
+        ControlLawKind::Limited,
     ];
 
     /// Its name in files.
@@ -69,6 +72,7 @@ impl ControlLawKind {
             ControlLawKind::Robust => "robust",
             ControlLawKind::Adaptive => "adaptive",
             ControlLawKind::OperationalSpace => "operational_space",
+            ControlLawKind::Limited => "limited",
         }
     }
 
@@ -85,11 +89,21 @@ impl ControlLawKind {
         ];
         const ADAPTIVE: &[Gain] = &[gain("lambda", Per::Joint), gain("k_d", Per::Joint), gain("k_pi", Per::Parameter)];
         const OPERATIONAL_SPACE: &[Gain] = &[gain("k_p", Per::Row), gain("k_d", Per::Row), or_zero("k_i", Per::Row)];
+        const LIMITED: &[Gain] = &[
+            gain("k_p", Per::Row),
+            gain("k_d", Per::Row),
+            or_zero("k_i", Per::Row),
+            gain("rate_limits", Per::Joint),
+            gain("acceleration_limits", Per::Joint),
+            gain("horizon", Per::Law),
+            gain("braking", Per::Law),
+        ];
         match self {
             ControlLawKind::PdGravity | ControlLawKind::InverseDynamics => JOINT_SPACE,
             ControlLawKind::Robust => ROBUST,
             ControlLawKind::Adaptive => ADAPTIVE,
             ControlLawKind::OperationalSpace => OPERATIONAL_SPACE,
+            ControlLawKind::Limited => LIMITED,
         }
     }
 

@@ -3,9 +3,9 @@
 use std::slice::from_ref;
 use std::time::{Duration, Instant};
 
-use armgen_runtime::clik::Integration;
+use armgen_runtime::clik::{Integration, JointLimits};
 use armgen_runtime::control::{
-    Adaptive, BoundaryLayer, ControlError, Interval, InverseDynamics, OperationalSpace, PdGravity, Robust, TorqueLimits,
+    Adaptive, BoundaryLayer, ControlError, Interval, InverseDynamics, Limited, OperationalSpace, PdGravity, Robust, TorqueLimits,
 };
 use armgen_runtime::nalgebra::SVector;
 use armgen_runtime::reference::{JointReference, OperationalReference, Pose, State};
@@ -316,6 +316,17 @@ where
                 let [k_p, k_d, k_i] = ["k_p", "k_d", "k_i"].map(|key| sized(law.gain(key)));
                 let controller = OperationalSpace::new(self.task, k_p, k_d, k_i, period)?;
                 unwatched(limits.map_or(controller, |l| controller.with_torque_limits(l)))
+            }
+            ControlLawKind::Limited => {
+                let [k_p, k_d, k_i] = ["k_p", "k_d", "k_i"].map(|key| sized(law.gain(key)));
+                let controller = OperationalSpace::new(self.task, k_p, k_d, k_i, period)?;
+                let range =
+                    |side: usize| std::array::from_fn(|i| self.robot.joints.get(i).map_or(f64::NAN, |of| of.position[side]));
+                let joints = JointLimits::rates(sized(law.gain("rate_limits")))?.with_range(range(0), range(1))?;
+                let joints = joints.with_acceleration(sized(law.gain("acceleration_limits")))?;
+                let free = || TorqueLimits::new([f64::INFINITY; N]);
+                let torques = limits.map_or_else(free, Ok)?;
+                unwatched(Limited::new(controller, torques, joints, scalar("horizon"), scalar("braking"))?)
             }
         })
     }

@@ -79,6 +79,20 @@ impl<T: RealField + Copy, const N: usize, const M: usize> Limited<T, N, M> {
         Ok(Self { law, torques, joints, horizon, braking })
     }
 
+    /// The same with another law.
+    #[cfg(feature = "std")]
+    pub(crate) fn with_law(&self, law: OperationalSpace<T, N, M>) -> Self {
+        Self { law, ..*self }
+    }
+
+    /// The same with limits that never act.
+    #[cfg(feature = "std")]
+    pub(crate) fn without_limits(&self) -> Self {
+        let huge = [lit(1e12); N];
+        let (torques, joints) = (TorqueLimits::new(huge), JointLimits::rates(huge));
+        Self { torques: torques.unwrap_or(self.torques), joints: joints.unwrap_or(self.joints), ..*self }
+    }
+
     /// The present integral of the error, m s or rad s, row by row of the task.
     pub fn integral(&self) -> &SVector<T, M> {
         self.law.integral()

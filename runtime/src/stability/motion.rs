@@ -20,7 +20,7 @@
 
 use super::{delay::Delay, error::StabilityError};
 use crate::{
-    control::{Adaptive, Controller, InverseDynamics, OperationalSpace, PdGravity, Robust},
+    control::{Adaptive, Controller, InverseDynamics, Limited, OperationalSpace, PdGravity, Robust},
     linalg::lit,
     reference::{JointReference, State},
     robot::{Dynamics, Regressor},
@@ -141,6 +141,25 @@ impl<P, R: Dynamics<N>, const N: usize, const M: usize> LineariseInMotion<P, R, 
 
     fn with_controller_state(&self, controller_state: &[R::Real]) -> Self {
         Self { integral: state_or(&self.integral, controller_state), ..*self }
+    }
+}
+
+/// The law that it keeps within limits, and the same without them.
+impl<P, R: Dynamics<N>, const N: usize, const M: usize> LineariseInMotion<P, R, N> for Limited<R::Real, N, M> {
+    fn converged(&self, plant: &P) -> Self {
+        self.without_limits().with_law(LineariseInMotion::<P, R, N>::converged(&self.law, plant))
+    }
+
+    fn weights(&self, model: &R, q: &SVector<R::Real, N>) -> Weights<R::Real, N> {
+        LineariseInMotion::<P, R, N>::weights(&self.law, model, q)
+    }
+
+    fn controller_state(&self) -> Vec<R::Real> {
+        LineariseInMotion::<P, R, N>::controller_state(&self.law)
+    }
+
+    fn with_controller_state(&self, controller_state: &[R::Real]) -> Self {
+        self.with_law(LineariseInMotion::<P, R, N>::with_controller_state(&self.law, controller_state))
     }
 }
 

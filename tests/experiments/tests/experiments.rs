@@ -193,6 +193,9 @@ fn every_law_moves_the_arm() {
             "lambda: [100, 100, 100, 100]\n  k_d: [1000, 500, 2000, 100]\n  k_pi: [10, 10, 0.01, 10, 10, 10, 10, 10, 10, 10, 10, 10, 10, 10]"
         }
         ControlLawKind::OperationalSpace => "k_p: [1e4, 1e4, 1e4, 1e4]\n  k_d: [200, 200, 200, 200]\n  k_i: [0, 0, 0, 0]",
+        ControlLawKind::Limited => {
+            "k_p: [1e4, 1e4, 1e4, 1e4]\n  k_d: [200, 200, 200, 200]\n  k_i: [0, 0, 0, 0]\n  rate_limits: [10, 10, 5, 20]\n  acceleration_limits: [200, 200, 50, 400]\n  horizon: 8e-3\n  braking: 0.7"
+        }
     }
     };
     for kind in ControlLawKind::ALL {
