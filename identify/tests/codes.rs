@@ -5,7 +5,7 @@ use armgen_identify::arm::Arm;
 use armgen_identify::finding::{Code, Findings};
 use armgen_identify::identify::{identify, Input};
 use armgen_identify::log::{read, Format};
-use armgen_identify::options::Options;
+use armgen_identify::options::{Gains, Options};
 use armgen_identify::suspect;
 
 use crate::arms::{arm, csv, format, motion, Motion, Random, ELBOW};
