@@ -314,7 +314,7 @@ Exit codes: 0 done, 1 the description, the options or a log is faulty, or parame
         /// Leave faulty rows out, with a warning
         #[arg(long)]
         skip_bad: bool,
-        /// Free the estimates of the noise of positions by the reference of the drives, columns `qr_JOINT`
+        /// Lower the bias that noise of positions makes, by the reference of the drives, columns `qr_JOINT`; dry friction keeps a part
         #[arg(long)]
         instruments: bool,
         /// Keep parameters that the logs do not show

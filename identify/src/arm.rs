@@ -30,6 +30,8 @@ pub struct Joint {
     pub name: String,
     /// Whether it slides.
     pub slides: bool,
+    /// Lowest and highest position, where the file has them.
+    pub position: Option<[f64; 2]>,
     /// Highest torque or force; infinite where the file has none.
     pub effort: f64,
     /// Highest rate; infinite where the file has none.
@@ -156,6 +158,7 @@ impl Arm {
                 Joint {
                     name: joint.name.clone(),
                     slides: joint.kind == JointKind::Prismatic,
+                    position: joint.limits.position.as_ref().map(|limits| [0, 1].map(|end| limits[end].to_f64())),
                     effort: joint.limits.effort.as_ref().map_or(f64::INFINITY, Number::to_f64),
                     velocity: joint.limits.velocity.as_ref().map_or(f64::INFINITY, Number::to_f64),
                     gain: joint.motor.as_ref().and_then(|motor| motor.gain.as_ref()).map(Number::to_f64),

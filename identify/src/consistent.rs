@@ -45,6 +45,22 @@ impl Consistent {
     }
 }
 
+/// What D may cost, over the least f.
+const COST: f64 = 1e-3;
+
+/// How far consistent parameters are above the least f, over what errors of the estimate explain; and over the least f the rise by joint. The
+/// parameters that exist are a convex set: where the truth is one of them, the nearest is no farther from the estimate than the truth.
+pub fn rise(arm: &Arm, reduced: &Reduced, found: &Consistent) -> (f64, Vec<f64>) {
+    let explained = 0.5 * reduced.reach + 2.0 * COST * found.unconstrained;
+    let base = arm.base.len();
+    let mut start = DVector::zeros(base + reduced.friction.len());
+    start.rows_mut(0, base).copy_from(&(&arm.combination * arm.nominal()));
+    let z = DVector::from_iterator(start.len(), found.base(arm).iter().chain(&found.friction).copied());
+    let d = z - crate::fit::solve(&reduced.gram, &start).x;
+    let of = |(h, score): &(DMatrix<f64>, DVector<f64>)| (0.5 * d.dot(&(h * &d)) - d.dot(score)) / found.unconstrained;
+    ((found.objective - found.unconstrained) / explained.max(f64::MIN_POSITIVE), reduced.of_joints.iter().map(of).collect())
+}
+
 /// Whether a matrix is positive definite, by much more than rounding.
 fn is_positive(j: &Matrix4<f64>) -> bool {
     let scale = Vector3::new(j[(0, 0)], j[(1, 1)], j[(2, 2)]).max().max(1e-300).sqrt();
@@ -295,7 +311,7 @@ pub fn consistent(arm: &Arm, reduced: &Reduced) -> Consistent {
     for _ in 0..9 {
         let mut next = x.clone();
         steps += problem.minimise(&mut next, 0.1 * mu, 1e-4 * mu);
-        if problem.f(&x) <= 1.001 * problem.f(&next) {
+        if problem.f(&x) <= (1.0 + COST) * problem.f(&next) {
             break;
         }
         (x, mu) = (next, 0.1 * mu);

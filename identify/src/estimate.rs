@@ -79,7 +79,7 @@ const DELAY_STEP: f64 = 2.5e-3;
 const FOLDS: usize = 5;
 
 /// The standard error of a sum of parts, from their spread.
-fn error_of_sum(parts: &[f64]) -> f64 {
+pub(crate) fn error_of_sum(parts: &[f64]) -> f64 {
     let n = parts.len() as f64;
     let mean = parts.iter().sum::<f64>() / n;
     (parts.iter().map(|part| (part - mean).powi(2)).sum::<f64>() * n / (n - 1.0)).sqrt()

@@ -219,6 +219,8 @@ pub struct Covariance {
     pub matrix: DMatrix<f64>,
     /// Blocks of time.
     pub blocks: usize,
+    /// How long each lasts, s.
+    pub length: f64,
     /// Half the width of a three-sigma interval, in sigma: more than 3 where there are few blocks.
     pub reach: f64,
 }
@@ -236,7 +238,8 @@ pub fn covariance(
     inverse: &DMatrix<f64>,
     joints: usize,
 ) -> Covariance {
-    let scores = scores(equations, active, residuals, weights, block_length(equations, residuals, weights, joints));
+    let length = block_length(equations, residuals, weights, joints);
+    let scores = scores(equations, active, residuals, weights, length);
     let blocks = scores.len();
     let mut meat = DMatrix::zeros(active.len(), active.len());
     for score in &scores {
@@ -244,7 +247,7 @@ pub fn covariance(
     }
     let (free, reach) = reach(blocks, active.len(), joints, 1);
     let matrix = inverse * meat * inverse * (blocks as f64 / free);
-    Covariance { matrix, blocks, reach }
+    Covariance { matrix, blocks, length, reach }
 }
 
 /// How many blocks are free behind as many unknowns, and half the width of an interval in sigma so that this many of them are as rarely wrong

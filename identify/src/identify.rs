@@ -108,7 +108,14 @@ pub struct Reduced {
     pub gram: Gram,
     /// Joint and term of the columns behind the base parameters.
     pub friction: Vec<(usize, Friction)>,
+    /// A'WA of the rows of each joint, and A'Wr with the residuals r of the estimate.
+    pub of_joints: Vec<(DMatrix<f64>, DVector<f64>)>,
+    /// How far above the least sum of squares the truth is at most, by the covariance of the estimate.
+    pub reach: f64,
 }
+
+/// Blocks of time that last longer have residuals that no noise of a drive has, s.
+const COLOURED: f64 = 2.0;
 
 /// Identifies an arm. Nothing is returned where the findings hold errors.
 pub fn identify(arm: &Arm, inputs: &[Input], options: &Options, findings: &mut Findings) -> Option<Identified> {
@@ -185,14 +192,7 @@ pub fn identify(arm: &Arm, inputs: &[Input], options: &Options, findings: &mut F
     }
     let (equations, _) = estimate.equations(None);
     estimate.fit(&equations);
-    if suspect::torques(&estimate, &logs[0], findings) {
-        return None;
-    }
-    let turned = turned_throughout(&estimate);
-    if turned {
-        let text = "viscous friction and inertias are negative throughout: the sign of all torques is turned";
-        let help = "turn the sign of the torque columns: a positive torque drives its joint in the positive direction";
-        findings.push(Finding::new(Code::SignSuspected, &logs[0].name, text, help));
+    if suspect::torques(&estimate, &inputs[0].log, &gains, findings) {
         return None;
     }
     if let Some(given) = &options.delay {
@@ -299,7 +299,13 @@ pub fn identify(arm: &Arm, inputs: &[Input], options: &Options, findings: &mut F
     }
     if (covariance.blocks as f64) < FEW_BLOCKS {
         let text = format!("{} independent stretches of time: intervals use Student's t", covariance.blocks);
-        findings.push(Finding::new(Code::ShortLog, &logs[0].name, text, "log 30 s or more for narrow intervals"));
+        let (text, help) = if covariance.length > COLOURED {
+            let text = format!("{text}; residuals are correlated over {:.1} s", covariance.length / 5.0);
+            (text, "the model or the log is wrong there, and a longer log does not mend it: look at the residuals of each joint, `--report`")
+        } else {
+            (text, "log 30 s or more for narrow intervals")
+        };
+        findings.push(Finding::new(Code::ShortLog, &logs[0].name, text, help));
     }
     // A term of friction that was left out may be there, too small to be seen: the intervals of all others allow for it.
     let wider = (options.friction.is_none() && !identify_gains).then(|| {
@@ -313,12 +319,15 @@ pub fn identify(arm: &Arm, inputs: &[Input], options: &Options, findings: &mut F
         let value = estimate.x[place];
         let around = |middle: f64, matrix: &DMatrix<f64>, k: usize, reach: f64| {
             let sigma = matrix[(k, k)].max(0.0).sqrt();
-            let (low, high) = ((middle - reach * sigma).min(value), (middle + reach * sigma).max(value));
-            Interval { value, sigma, low, high, excited: true }
+            Interval { value, sigma, low: middle - reach * sigma, high: middle + reach * sigma, excited: true }
         };
+        let own = around(value, &matrix, k, reach);
         match wider.as_ref().and_then(|(wider, of)| Some((wider, of, wider.active.binary_search(&place).ok()?))) {
-            Some((wider, of, k)) => around(wider.x[place], &of.matrix, k, of.reach),
-            None => around(value, &matrix, k, reach),
+            Some((wider, of, k)) => {
+                let wide = around(wider.x[place], &of.matrix, k, of.reach);
+                Interval { low: wide.low.min(own.low), high: wide.high.max(own.high), ..wide }
+            }
+            None => own,
         }
     };
     if !options.instruments && !identify_gains {
@@ -380,7 +389,7 @@ pub fn identify(arm: &Arm, inputs: &[Input], options: &Options, findings: &mut F
             .collect();
         found.loads.push((log, ten));
     }
-    found.reduced = reduce(&estimate, &equations, found.sessions.len() - 1);
+    found.reduced = reduce(&estimate, &equations, found.sessions.len() - 1, &matrix, reach);
     for &(place, value) in &estimate.fixed {
         if let Column::Friction(session, joint, term) = estimate.columns[place] {
             if session + 1 == found.sessions.len() {
@@ -398,7 +407,9 @@ pub fn identify(arm: &Arm, inputs: &[Input], options: &Options, findings: &mut F
         let model = model_of(arm, &estimate, place, &found);
         found.judgements.push(judge(arm, log, &model));
     }
-    poor_fits(arm, inputs, &found, findings);
+    for (input, judgement) in inputs.iter().zip(&found.judgements) {
+        poor_fits(arm, &input.log, judgement, findings);
+    }
     Some(found)
 }
 
@@ -551,17 +562,6 @@ fn cutoff_of(estimate: &Estimate<'_>, highest: f64) -> f64 {
     cutoff.min(highest)
 }
 
-/// Whether energy comes out of most joints: viscous friction is negative, clearly, throughout.
-fn turned_throughout(estimate: &Estimate<'_>) -> bool {
-    let n = estimate.arm.dof();
-    let negative = (0..n).filter(|&j| {
-        let of = |term| estimate.x[estimate.place(Column::Friction(0, j, term))];
-        // The sum at 1 rad/s: a small one of either may be negative by noise.
-        of(Friction::Viscous) + of(Friction::Coulomb) < 0.0
-    });
-    negative.count() == n
-}
-
 /// Directions that the logs do not show, in words, and for each active column whether it is part of one.
 fn directions(estimate: &Estimate<'_>, solution: &Solution, matrix: &DMatrix<f64>) -> (Vec<(Vec<String>, String)>, Vec<bool>) {
     let arm = estimate.arm;
@@ -641,7 +641,13 @@ fn inseparable(arm: &Arm, options: &Options) -> Vec<String> {
 }
 
 /// The reduced data over base parameters and the friction of a session: all other columns are eliminated.
-fn reduce(estimate: &Estimate<'_>, equations: &crate::fit::Equations, session: usize) -> Reduced {
+fn reduce(
+    estimate: &Estimate<'_>,
+    equations: &crate::fit::Equations,
+    session: usize,
+    covariance: &DMatrix<f64>,
+    reach: f64,
+) -> Reduced {
     let is_kept = |place: usize| match estimate.columns[place] {
         Column::Base(_) => true,
         Column::Friction(of, ..) => of == session,
@@ -649,7 +655,9 @@ fn reduce(estimate: &Estimate<'_>, equations: &crate::fit::Equations, session: u
     };
     let kept: Vec<usize> = estimate.active.iter().copied().filter(|&place| is_kept(place)).collect();
     let others: Vec<usize> = estimate.active.iter().copied().filter(|&place| !is_kept(place)).collect();
-    let whole = Sums::new(equations, &estimate.active).gram(&estimate.weights);
+    let joints = Sums::new(equations, &estimate.active).grams(&estimate.weights, estimate.arm.dof(), |k| equations.rows[k].joint);
+    let mut whole = Gram::zero(estimate.active.len());
+    joints.iter().for_each(|gram| whole.add(gram));
     let places =
         |of: &[usize]| -> Vec<usize> { of.iter().filter_map(|place| estimate.active.binary_search(place).ok()).collect() };
     let (of_kept, of_others) = (places(&kept), places(&others));
@@ -672,19 +680,24 @@ fn reduce(estimate: &Estimate<'_>, equations: &crate::fit::Equations, session: u
             _ => None,
         })
         .collect();
-    Reduced { gram, friction }
+    let x = DVector::from_fn(estimate.active.len(), |k, _| estimate.x[estimate.active[k]]);
+    let of_joint = |of: &Gram| {
+        let score = &of.g - &of.h * &x;
+        (of.of(&of_kept).h, DVector::from_fn(of_kept.len(), |k, _| score[of_kept[k]]))
+    };
+    // The sum of squares rises by e'He with the error e: its mean is tr(HC), its variance 2 tr(HCHC).
+    let product = &gram.h * DMatrix::from_fn(kept.len(), kept.len(), |i, j| covariance[(of_kept[i], of_kept[j])]);
+    let rise = product.trace() + reach * (2.0 * (&product * &product).trace().max(0.0)).sqrt();
+    Reduced { gram, friction, of_joints: joints.iter().map(of_joint).collect(), reach: rise * (reach / 3.0).powi(2) }
 }
 
-/// Joints that the model explains badly.
-fn poor_fits(arm: &Arm, inputs: &[Input], found: &Identified, findings: &mut Findings) {
-    for (input, judgement) in inputs.iter().zip(&found.judgements) {
-        for (j, relative) in judgement.moving.iter().enumerate().filter(|(_, relative)| **relative > 0.3) {
-            let name = &arm.joints[j].name;
-            let text = format!("the model leaves {:.0} % of the torque of joint `{name}`", 100.0 * relative);
-            let help =
-                "look at the direction of gravity, at `base`, at a load that the options do not name, and at the unit of torque";
-            let column = input.log.effort_column(name);
-            findings.push(Finding::new(Code::PoorFit, &input.log.name, text, help).in_column(column));
-        }
+/// Joints that a model explains badly.
+pub fn poor_fits(arm: &Arm, log: &Log, judgement: &Judgement, findings: &mut Findings) {
+    for (j, relative) in judgement.moving.iter().enumerate().filter(|(_, relative)| **relative > 0.3) {
+        let name = &arm.joints[j].name;
+        let text = format!("the model leaves {:.0} % of the torque of joint `{name}`", 100.0 * relative);
+        let help =
+            "look at the direction of gravity, at `base`, at a load that the options do not name, and at the unit of torque";
+        findings.push(Finding::new(Code::PoorFit, &log.name, text, help).in_column(log.effort_column(name)));
     }
 }

@@ -231,6 +231,37 @@ fn piece(
 }
 
 impl Piece {
+    /// A part of the kept samples, as it would be with the states under other joints: joint j has the states of `order[j]`, and the torque of
+    /// `torques[j]` times a scale. Y is not filtered.
+    pub fn exchanged(&self, arm: &Arm, order: &[usize], torques: &[(usize, f64)], step: usize) -> Piece {
+        let n = order.len();
+        let rows: Vec<usize> = (0..self.kept.len()).step_by(step).collect();
+        let by_joint = |x: &[f64], at: usize| order.iter().map(|&j| x[at * n + j]).collect::<Vec<_>>();
+        let of_states = |x: &[f64]| rows.iter().flat_map(|&row| by_joint(x, self.kept[row])).collect::<Vec<f64>>();
+        let (q, dq, ddq) = (of_states(&self.q), of_states(&self.dq), of_states(&self.ddq));
+        let torque = |&(j, scale): &(usize, f64)| rows.iter().map(|&row| scale * self.tau[j][self.kept[row]]).collect();
+        let of_rates = |&j: &usize| OF_RATES.map(|term| self.friction(j, term, 1.0, &[]));
+        let thin = |column: &Vec<f64>| rows.iter().map(|&row| column[row]).collect();
+        let spacing = if rows.len() > 1 { self.kept[rows[1]] - self.kept[rows[0]] } else { step };
+        Piece {
+            log: self.log,
+            period: self.period * spacing as f64,
+            start: self.time(0),
+            tau: torques.iter().map(torque).collect(),
+            kept: (0..rows.len()).collect(),
+            y: arm.regressor(&q, &dq, &ddq),
+            known: arm.known(&q, &dq, &ddq),
+            counts: rows.iter().flat_map(|&row| order.iter().map(move |&j| self.counts[row * n + j])).collect(),
+            eps: order.iter().map(|&j| self.eps[j]).collect(),
+            signs: of_states(&self.signs),
+            filter: self.filter.clone(),
+            of_rates: order.iter().map(of_rates).map(|columns| [0, 1, 2].map(|k| thin(&columns[k]))).collect(),
+            q,
+            dq,
+            ddq,
+        }
+    }
+
     /// The stamp of a kept sample, s.
     pub fn time(&self, row: usize) -> f64 {
         self.start + self.kept[row] as f64 * self.period

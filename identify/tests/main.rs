@@ -8,5 +8,6 @@ mod excite;
 mod friction;
 mod instruments;
 mod options;
+mod suspect;
 mod text;
 mod truth;

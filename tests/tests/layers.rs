@@ -157,7 +157,7 @@ const IDENTIFY: Layers = &[
     ("prepare", &["arm", "log", "signal"]),
     ("options", &["log", "prepare"]),
     ("estimate", &["arm", "fit", "options", "prepare", "signal"]),
-    ("suspect", &["arm", "estimate", "finding", "fit", "log", "signal"]),
+    ("suspect", &["arm", "estimate", "finding", "fit", "log", "prepare", "signal"]),
     ("judge", &["arm", "log", "prepare", "signal"]),
     ("identify", &["arm", "body", "estimate", "finding", "fit", "judge", "log", "options", "prepare", "signal", "suspect"]),
     ("excite", &["arm", "prepare"]),

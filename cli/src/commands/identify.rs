@@ -4,12 +4,13 @@ use std::fs::File;
 use std::io::{BufReader, Read};
 use std::path::{Path, PathBuf};
 
+use armgen_codegen::diagnostic::Severity;
 use armgen_codegen::kinds::Scalar;
 use armgen_identify::arm::Arm;
 use armgen_identify::certificate::{write_certified, Proved, LARGEST_GAP};
-use armgen_identify::consistent::consistent;
+use armgen_identify::consistent::{consistent, rise};
 use armgen_identify::finding::{Code, Finding, Findings};
-use armgen_identify::identify::{identify, Identified, Input, Interval};
+use armgen_identify::identify::{identify, poor_fits, Identified, Input, Interval};
 use armgen_identify::judge::{judge, Judgement, Model};
 use armgen_identify::log::{self, Format, Log};
 use armgen_identify::options::{self, Load, LogOptions, Options};
@@ -87,7 +88,7 @@ fn run_or_exit_code(file: &Path, asked: &Asked) -> Result<u8, u8> {
             terminal::error(&format!("{}: without a log to identify from there is nothing to write", out.display()));
             return Err(UNREADABLE);
         }
-        return judged(&arm, held_out, asked, &findings);
+        return judged(&arm, held_out, asked, &chosen, findings);
     }
     let found = with_spinner("identifying", || identify(&arm, &inputs, &chosen, &mut findings));
     let Some(found) = found.filter(|_| !findings.has_errors()) else { return Err(refused(&findings)) };
@@ -104,11 +105,16 @@ fn run_or_exit_code(file: &Path, asked: &Asked) -> Result<u8, u8> {
         }
     };
     let of_written = written.as_ref().map(|(written, ..)| written);
+    if let Some(finding) = of_written.and_then(|written| too_far(&arm, &inputs, &found, written)) {
+        findings.push(finding);
+    }
     let model = model(&arm, &found, of_written);
     let mut validation = Vec::new();
     for log in held_out {
         let log = in_torques(&arm, log, &found.gains)?;
-        validation.push((log.name.clone(), judge(&arm, &log, &model)));
+        let judgement = judge(&arm, &log, &model);
+        poor_fits(&arm, &log, &judgement, &mut findings);
+        validation.push((log.name.clone(), judgement));
     }
     terminal::diagnose(&findings.render());
     let mut code = terminal::print(&table(&arm, &inputs, &found, &validation));
@@ -141,11 +147,30 @@ fn run_or_exit_code(file: &Path, asked: &Asked) -> Result<u8, u8> {
             return Ok(FAULTY);
         }
     }
+    if findings.has_errors() {
+        return Ok(FAULTY);
+    }
     if code == DONE && !is_shown {
         terminal::error("the logs do not show all parameters: with `--accept-unexcited` those keep the values of the file");
         return Ok(FAULTY);
     }
     Ok(code)
+}
+
+/// An error where what exists explains the logs much worse than what does not.
+fn too_far(arm: &Arm, inputs: &[Input], found: &Identified, written: &Written) -> Option<Finding> {
+    let (rise, joints) = rise(arm, &found.reduced, &written.consistent);
+    let largest = joints.iter().copied().fold(0.0, f64::max);
+    let where_: Vec<String> = (0..arm.dof())
+        .filter(|&j| joints[j] > 0.2 * largest)
+        .map(|j| format!("`{}` ({})", arm.joints[j].name, percent(joints[j])))
+        .collect();
+    let text = format!(
+        "the sum of squares of bodies and friction that can exist is above its least value by {rise:.1} times what noise explains, at {}",
+        where_.join(", ")
+    );
+    let help = "look at signs, order and units of the columns of these joints, at their axes in the description, and at loads and springs that it lacks: the written numbers do not describe the arm";
+    (rise > 1.0).then(|| Finding::new(Code::PoorFit, &inputs[0].log.name, text, help).as_bad_as(Severity::Error))
 }
 
 /// The text with the byte order mark that its file begins with.
@@ -247,7 +272,7 @@ fn model(arm: &Arm, found: &Identified, written: Option<&Written>) -> Model {
 }
 
 /// Judges the numbers of a description, identifies nothing.
-fn judged(arm: &Arm, logs: Vec<Log>, asked: &Asked, findings: &Findings) -> Result<u8, u8> {
+fn judged(arm: &Arm, logs: Vec<Log>, asked: &Asked, chosen: &Options, mut findings: Findings) -> Result<u8, u8> {
     if logs.is_empty() {
         terminal::error("no log is given: name one to identify from, or one to judge by, `--validate LOG.csv`");
         return Err(UNREADABLE);
@@ -256,21 +281,26 @@ fn judged(arm: &Arm, logs: Vec<Log>, asked: &Asked, findings: &Findings) -> Resu
         pi: (&arm.combination * arm.nominal()).as_slice().to_vec(),
         friction: arm.joints.iter().map(|joint| joint.friction.map(Option::unwrap_or_default)).collect(),
         velocities: arm.joints.iter().map(|joint| joint.stribeck_velocity).collect(),
-        delays: None,
+        delays: chosen
+            .delay
+            .as_ref()
+            .map(|given| (0..arm.dof()).map(|j| given.get(j).or(given.first()).copied().unwrap_or(0.0)).collect()),
         spreads: None,
         covariance: None,
     };
     let mut validation = Vec::new();
     for log in logs {
         let log = in_torques(arm, log, &[])?;
-        validation.push((log.name.clone(), judge(arm, &log, &model)));
+        let judgement = judge(arm, &log, &model);
+        poor_fits(arm, &log, &judgement, &mut findings);
+        validation.push((log.name.clone(), judgement));
     }
     terminal::diagnose(&findings.render());
     let code = terminal::print(&residuals(arm, "validation", validation.iter().map(|(name, of)| (name.as_str(), of))));
     if let Some(folder) = &asked.report {
         let of: Vec<_> = validation.iter().map(|(file, of)| report::judgement(arm, file, of)).collect();
-        write_report(folder, &json!({"robot": arm.name, "validation": of, "diagnostics": report::findings(findings)}))?;
-        write_to(&folder.join("report.html"), &page::of_validation(arm, &validation, findings))?;
+        write_report(folder, &json!({"robot": arm.name, "validation": of, "diagnostics": report::findings(&findings)}))?;
+        write_to(&folder.join("report.html"), &page::of_validation(arm, &validation, &findings))?;
         write_torques(folder, arm, validation.iter().map(|(name, of)| (name.as_str(), of)))?;
     }
     Ok(code)

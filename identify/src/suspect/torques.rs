@@ -1,0 +1,383 @@
+//! Torques and states under other signs or other joints: the fit that bodies and friction allow is compared.
+//!
+//! ```text
+//! minimise |W^(1/2) (S b - A x)|²   with viscous >= 0, Coulomb >= 0, mean M_jj >= 0
+//! ```
+//!
+//! S has the signs of the joints. The solution is linear in them, so every pattern of signs costs a small dual problem. A joint whose torque
+//! is turned fits without the inequalities, too: with them its friction would have to drive it.
+
+use nalgebra::{DMatrix, DVector};
+
+use crate::estimate::{error_of_sum, Column, Estimate};
+use crate::finding::{Code, Finding, Findings};
+use crate::fit::{block_length, solve, Equations, Gram, Sums};
+use crate::log::Log;
+use crate::prepare::{Friction, Piece};
+use crate::signal::rms;
+
+/// Joints whose signs are tried in all patterns.
+const SIGNS: usize = 10;
+
+/// States that exchanged joints are compared by.
+const STATES: usize = 400;
+
+/// States at which mean inertias are taken.
+const INERTIAS: usize = 12;
+
+/// Sums of the equations of an estimate, by joint of the row and joint of the torque.
+struct Sides {
+    equations: Equations,
+    /// By row, 1 or 0.
+    counts: Vec<f64>,
+    active: Vec<usize>,
+    size: Vec<f64>,
+    h: Vec<DMatrix<f64>>,
+    cross: Vec<Vec<DVector<f64>>>,
+    squares: Vec<Vec<f64>>,
+    /// Rows that give what is at least 0, over the active columns.
+    inequalities: DMatrix<f64>,
+}
+
+/// An order of the torques: the solution of each joint's torque alone, and what the inequalities need.
+struct Trial<'s> {
+    sides: &'s Sides,
+    order: Vec<usize>,
+    inverse: DMatrix<f64>,
+    parts: Vec<DVector<f64>>,
+    products: DMatrix<f64>,
+    squares: f64,
+    values: DMatrix<f64>,
+    dual: DMatrix<f64>,
+}
+
+/// A fit: the sum of squares and the solution.
+struct Fit {
+    cost: f64,
+    x: DVector<f64>,
+}
+
+impl Sides {
+    fn new(estimate: &Estimate<'_>) -> Sides {
+        let n = estimate.arm.dof();
+        let (equations, _) = estimate.equations(None);
+        let active = estimate.active.clone();
+        let of = |j: usize| (0..equations.rows.len()).filter(move |k| k % n == j);
+        let size = (0..n).map(|j| rms(&of(j).map(|k| equations.b[k]).collect::<Vec<_>>()).max(1e-12)).collect();
+        let sums = Sums::new(&equations, &active);
+        let counts: Vec<f64> = equations.rows.iter().map(|row| if row.counts { 1.0 } else { 0.0 }).collect();
+        let h = sums.grams(&counts, n, |k| equations.rows[k].joint).into_iter().map(|gram| gram.h).collect();
+        let pairs = |j: usize, other: usize| sums.rows(j).iter().map(move |&k| (k, k - j + other)).collect::<Vec<_>>();
+        let cross = (0..n)
+            .map(|j| {
+                let of = |other| sums.times(j, pairs(j, other).into_iter().map(|(k, at)| counts[k] * equations.b[at]));
+                (0..n).map(of).collect()
+            })
+            .collect();
+        let squares = (0..n)
+            .map(|j| {
+                let of = |other| pairs(j, other).into_iter().map(|(k, at)| counts[k] * equations.b[at].powi(2)).sum();
+                (0..n).map(of).collect()
+            })
+            .collect();
+        let inequalities = inequalities(estimate);
+        Sides { equations, counts, active, size, h, cross, squares, inequalities }
+    }
+
+    /// Every row counts alike, whatever its joint.
+    fn weight(&self, order: &[usize], j: usize) -> f64 {
+        1.0 / (self.size[order[j]] * self.size[order[j]])
+    }
+
+    fn trial(&self, order: &[usize]) -> Trial<'_> {
+        let n = self.size.len();
+        let mut gram = Gram::zero(self.active.len());
+        let mut squares = 0.0;
+        for j in 0..n {
+            gram.h += &self.h[j] * self.weight(order, j);
+            squares += self.squares[j][order[j]] * self.weight(order, j);
+        }
+        let inverse = solve(&gram, &DVector::zeros(self.active.len())).inverse;
+        let sides: Vec<DVector<f64>> = (0..n).map(|j| &self.cross[j][order[j]] * self.weight(order, j)).collect();
+        let parts: Vec<DVector<f64>> = sides.iter().map(|side| &inverse * side).collect();
+        let products = DMatrix::from_fn(n, n, |i, j| sides[i].dot(&parts[j]));
+        let values = DMatrix::from_columns(&parts.iter().map(|part| &self.inequalities * part).collect::<Vec<_>>());
+        let dual = &self.inequalities * &inverse * self.inequalities.transpose();
+        Trial { sides: self, order: order.to_vec(), inverse, parts, products, squares, values, dual }
+    }
+}
+
+impl Trial<'_> {
+    /// The least squares with these signs that the inequalities allow.
+    fn fit(&self, signs: &[f64]) -> Fit {
+        let signs = DVector::from_row_slice(signs);
+        let values = &self.values * &signs;
+        let m = values.len();
+        let mut lambda = DVector::<f64>::zeros(m);
+        // Gauss-Seidel of the dual, whose only inequalities are lambda >= 0.
+        for _ in 0..200 {
+            let mut moved = 0.0f64;
+            for i in 0..m {
+                let diagonal = self.dual[(i, i)];
+                if diagonal > 0.0 {
+                    let slope = values[i] + self.dual.row(i).transpose().dot(&lambda);
+                    let next = (lambda[i] - slope / diagonal).max(0.0);
+                    moved = moved.max((next - lambda[i]).powi(2) * diagonal);
+                    lambda[i] = next;
+                }
+            }
+            if moved < 1e-12 * self.squares {
+                break;
+            }
+        }
+        let raised = -(lambda.dot(&(&self.dual * &lambda)) + 2.0 * lambda.dot(&values));
+        let cost = (self.squares - signs.dot(&(&self.products * &signs)) + raised).max(0.0);
+        let mut x = &self.inverse * (self.sides.inequalities.transpose() * lambda);
+        for (part, sign) in self.parts.iter().zip(signs.iter()) {
+            x += part * *sign;
+        }
+        Fit { cost, x }
+    }
+
+    fn plain(&self) -> Fit {
+        self.fit(&vec![1.0; self.order.len()])
+    }
+
+    /// Weighted residuals, row by row.
+    fn residuals(&self, signs: &[f64], x: &DVector<f64>) -> Vec<f64> {
+        let (equations, n) = (&self.sides.equations, self.order.len());
+        (0..equations.rows.len())
+            .map(|k| {
+                let (row, j) = (equations.row(k), k % n);
+                let model: f64 = self.sides.active.iter().zip(x.iter()).map(|(&place, x)| row[place] * x).sum();
+                let torque = signs[j] * equations.b[k - j + self.order[j]];
+                (torque - model) * (self.sides.counts[k] * self.sides.weight(&self.order, j)).sqrt()
+            })
+            .collect()
+    }
+}
+
+/// Whether residuals are smaller than those before: by more than what is left of some joints, and by more than three standard errors of the
+/// difference, from stretches of time that hardly know one another.
+fn is_better(equations: &Equations, before: &[f64], after: &[f64], joints: &[usize], n: usize) -> bool {
+    let ones = vec![1.0; after.len()];
+    let length = block_length(equations, after, &ones, n);
+    let mut gains: Vec<f64> = Vec::new();
+    let mut block: Option<(usize, f64)> = None;
+    let mut left = 0.0;
+    for (k, row) in equations.rows.iter().enumerate() {
+        if !block.is_some_and(|(log, start)| log == row.log && (0.0..length).contains(&(row.time - start))) {
+            block = Some((row.log, row.time));
+            gains.push(0.0);
+        }
+        *gains.last_mut().expect("a block") += before[k] * before[k] - after[k] * after[k];
+        if joints.contains(&row.joint) {
+            left += after[k] * after[k];
+        }
+    }
+    let gain: f64 = gains.iter().sum();
+    gain > left && gains.len() > 1 && gain > 3.0 * error_of_sum(&gains)
+}
+
+/// What bodies and friction keep at least 0, as rows over the active columns: viscous and Coulomb friction, and the mean inertia of each joint.
+fn inequalities(estimate: &Estimate<'_>) -> DMatrix<f64> {
+    let (arm, n, active) = (estimate.arm, estimate.arm.dof(), &estimate.active);
+    let mut rows: Vec<DVector<f64>> = Vec::new();
+    for (k, &place) in active.iter().enumerate() {
+        if matches!(estimate.columns[place], Column::Friction(_, _, Friction::Viscous | Friction::Coulomb)) {
+            rows.push(DVector::from_fn(active.len(), |i, _| f64::from(u8::from(i == k))));
+        }
+    }
+    let all: Vec<(&Piece, usize)> =
+        estimate.pieces.iter().flat_map(|piece| piece.kept.iter().map(move |&k| (piece, k))).collect();
+    let step = (all.len() / INERTIAS).max(1);
+    let q: Vec<f64> = all.iter().step_by(step).flat_map(|(piece, k)| piece.q[k * n..(k + 1) * n].iter().copied()).collect();
+    let states = q.len() / n;
+    let still = vec![0.0; q.len()];
+    let gravity = arm.regressor(&q, &still, &still);
+    let base = arm.base.len();
+    for j in 0..n {
+        let mut row = DVector::zeros(active.len());
+        let unit: Vec<f64> = (0..q.len()).map(|k| f64::from(u8::from(k % n == j))).collect();
+        let moved = arm.regressor(&q, &still, &unit);
+        for (k, &place) in active.iter().enumerate() {
+            if let Column::Base(column) = estimate.columns[place] {
+                let at = |state: usize| (state * n + j) * base + column;
+                row[k] = (0..states).map(|state| moved[at(state)] - gravity[at(state)]).sum::<f64>() / states as f64;
+            }
+        }
+        rows.push(row);
+    }
+    DMatrix::from_fn(rows.len(), active.len(), |i, k| rows[i][k])
+}
+
+/// A fit that another order or another sign makes clearly better; that is reported, and whether it was.
+pub fn torques(estimate: &Estimate<'_>, log: &Log, gains: &[f64], findings: &mut Findings) -> bool {
+    let n = estimate.arm.dof();
+    let same: Vec<usize> = (0..n).collect();
+    let ones = vec![1.0; n];
+    let sides = Sides::new(estimate);
+    let own = sides.trial(&same);
+    let before = own.plain();
+    let left = own.residuals(&ones, &before.x);
+    let clearly = |trial: &Trial<'_>, signs: &[f64], fit: &Fit, joints: &[usize]| {
+        is_better(&sides.equations, &left, &trial.residuals(signs, &fit.x), joints, n)
+    };
+    let name = |i: usize| estimate.arm.joints[i].name.as_str();
+    let mut best: Option<(Fit, Vec<f64>)> = None;
+    for flips in 1u32..1 << n.min(SIGNS) {
+        let signs: Vec<f64> = (0..n).map(|j| if j < SIGNS && flips >> j & 1 == 1 { -1.0 } else { 1.0 }).collect();
+        let fit = own.fit(&signs);
+        if fit.cost < best.as_ref().map_or(before.cost, |(best, _)| best.cost) {
+            best = Some((fit, signs));
+        }
+    }
+    let mut orders: Option<(Fit, Vec<usize>)> = None;
+    // From the best exchange on, exchanges that help further.
+    loop {
+        let from = orders.as_ref().map_or_else(|| same.clone(), |(_, order)| order.clone());
+        let start = orders.as_ref().map_or(before.cost, |(fit, _)| 0.999 * fit.cost);
+        let mut next: Option<(Fit, Vec<usize>)> = None;
+        for i in 0..n {
+            for k in i + 1..n {
+                let mut order = from.clone();
+                order.swap(i, k);
+                let fit = sides.trial(&order).plain();
+                if fit.cost < next.as_ref().map_or(start, |(best, _)| best.cost) {
+                    next = Some((fit, order));
+                }
+            }
+        }
+        let Some(next) = next else { break };
+        orders = Some(next);
+    }
+    let exchanged = exchanged(estimate, gains);
+    let found = |fit: Option<&Fit>| fit.map_or(1.0, |fit| fit.cost / before.cost);
+    let least = found(best.as_ref().map(|(fit, _)| fit)).min(found(orders.as_ref().map(|(fit, _)| fit)));
+    if let Some(exchanged) = exchanged.filter(|exchanged| exchanged.fall < least) {
+        let words = |&j: &usize| {
+            let rate = format!("dq_{}", name(j));
+            let effort = log.effort_column(name(j));
+            let columns = [Some(format!("q_{}", name(j))), log.dq.as_ref().map(|_| rate), exchanged.whole.then_some(effort)];
+            let columns: Vec<String> = columns.into_iter().flatten().collect();
+            format!("{} hold those of {}", columns.join(", "), name(exchanged.order[j]))
+        };
+        // The columns under a name are those of the joint whose states they fit.
+        let moved: Vec<usize> = (0..n).filter(|&j| exchanged.order[j] != j).collect();
+        let fall = 100.0 * exchanged.fall.sqrt();
+        let text = format!(
+            "the residual falls to {fall:.0} % with other joints: {}",
+            moved.iter().map(words).collect::<Vec<_>>().join("; ")
+        );
+        let help = "rename the columns under `columns` of the options";
+        let column = format!("q_{}", name(moved[0]));
+        findings.push(Finding::new(Code::JointOrder, &log.name, text, help).in_column(column));
+        return true;
+    }
+    // Of both that which explains more.
+    if let (Some((turned, _)), Some((ordered, _))) = (&best, &orders) {
+        if ordered.cost < turned.cost {
+            best = None;
+        } else {
+            orders = None;
+        }
+    }
+    if let Some((fit, signs)) = best {
+        let turned: Vec<usize> = (0..n).filter(|&j| signs[j] < 0.0).collect();
+        if clearly(&own, &signs, &fit, &turned) {
+            let fall = 100.0 * (fit.cost / before.cost).sqrt();
+            let columns: Vec<String> = turned.iter().map(|&j| log.effort_column(name(j))).collect();
+            let (which, column) = match columns.as_slice() {
+                all if all.len() == n && n > 1 => ("all torques".to_owned(), String::new()),
+                [first, ..] => (columns.join(", "), first.clone()),
+                [] => return false,
+            };
+            let text = format!(
+                "the sign of {which} is turned: the residual that friction and inertia above 0 allow falls to {fall:.0} %"
+            );
+            let help = "torques act from the link before on the link behind, along the joint axis: turn the sign, or the axis";
+            findings.push(Finding::new(Code::SignSuspected, &log.name, text, help).in_column(column));
+            return true;
+        }
+    }
+    if let Some((fit, order)) = orders {
+        let moved: Vec<usize> = (0..n).filter(|&j| order[j] != j).collect();
+        if clearly(&sides.trial(&order), &ones, &fit, &moved) {
+            let words = |&j: &usize| format!("{} is that of {}", log.effort_column(name(order[j])), name(j));
+            let fall = 100.0 * (fit.cost / before.cost).sqrt();
+            let text = format!(
+                "the residual falls to {fall:.0} % in another order: {}",
+                moved.iter().map(words).collect::<Vec<_>>().join(", ")
+            );
+            let help = "rename the columns under `columns` of the options";
+            let column = log.effort_column(name(moved[0]));
+            findings.push(Finding::new(Code::JointOrder, &log.name, text, help).in_column(column));
+            return true;
+        }
+    }
+    false
+}
+
+/// Joints whose states, or whose states and torques, fit under other names.
+struct Exchanged {
+    order: Vec<usize>,
+    whole: bool,
+    /// The sum of squares over that of the log's own order.
+    fall: f64,
+}
+
+/// The exchange of states, or of states and torques, that explains most, where it explains clearly more.
+fn exchanged(estimate: &Estimate<'_>, gains: &[f64]) -> Option<Exchanged> {
+    let n = estimate.arm.dof();
+    let same: Vec<usize> = (0..n).collect();
+    let ones = vec![1.0; n];
+    let all: usize = estimate.pieces.iter().map(|piece| piece.kept.len()).sum();
+    let step = (all / STATES).max(1);
+    let sides = |order: &[usize], whole: bool| {
+        let torque = |j: usize| if whole { (order[j], gains[j] / gains[order[j]]) } else { (j, 1.0) };
+        let torques: Vec<(usize, f64)> = (0..n).map(torque).collect();
+        let pieces: Vec<Piece> =
+            estimate.pieces.iter().map(|piece| piece.exchanged(estimate.arm, order, &torques, step)).collect();
+        Sides::new(&Estimate {
+            pieces: &pieces,
+            along_reference: None,
+            delays: vec![0.0; n],
+            sizes: vec![Vec::new(); pieces.len()],
+            ..estimate.clone()
+        })
+    };
+    let own = sides(&same, true);
+    let before = own.trial(&same).plain();
+    let left = own.trial(&same).residuals(&ones, &before.x);
+    let mut found: Option<Exchanged> = None;
+    for whole in [true, false] {
+        let mut from = same.clone();
+        let (mut least, mut rest) = (before.cost, left.clone());
+        // From the best exchange on, exchanges that help clearly further.
+        loop {
+            let mut next: Option<(f64, Vec<usize>)> = None;
+            for (i, k) in (0..n).flat_map(|i| (i + 1..n).map(move |k| (i, k))) {
+                let mut order = from.clone();
+                order.swap(i, k);
+                let cost = sides(&order, whole).trial(&same).plain().cost;
+                if cost < next.as_ref().map_or(least, |(cost, _)| *cost) {
+                    next = Some((cost, order));
+                }
+            }
+            let Some((cost, order)) = next else { break };
+            let other = sides(&order, whole);
+            let trial = other.trial(&same);
+            let after = trial.residuals(&ones, &trial.plain().x);
+            let moved: Vec<usize> = (0..n).filter(|&j| order[j] != from[j]).collect();
+            if !is_better(&own.equations, &rest, &after, &moved, n) {
+                break;
+            }
+            (least, from, rest) = (cost, order, after);
+        }
+        let fall = least / before.cost;
+        if from != same && found.as_ref().is_none_or(|found| fall < found.fall) {
+            found = Some(Exchanged { order: from, whole, fall });
+        }
+    }
+    found
+}

@@ -1,0 +1,167 @@
+//! Columns under other signs, other joints and other units: each joint and each pair is named.
+
+use armgen_identify::finding::{Code, Findings};
+use armgen_identify::identify::{identify, Identified, Input};
+use armgen_identify::log::read;
+use armgen_identify::options::Options;
+
+use crate::arms::{arm, csv, format, motion, Motion, Random, ELBOW, SCARA};
+
+/// What an identification finds in a log with noise that `change` has spoilt.
+fn found(text: &str, change: &dyn Fn(&mut Motion)) -> Findings {
+    identified(text, change).1
+}
+
+fn identified(text: &str, change: &dyn Fn(&mut Motion)) -> (Option<Identified>, Findings) {
+    let arm = arm(text);
+    let mut motion = motion(text, 4, 15.0, 50.0);
+    let n = arm.dof();
+    let mut random = Random(8);
+    let sizes: Vec<f64> = (0..n).map(|j| motion.tau.iter().skip(j).step_by(n).fold(0.0f64, |a, x| a.max(x.abs()))).collect();
+    motion.tau.iter_mut().enumerate().for_each(|(k, tau)| *tau += 0.01 * sizes[k % n] * random.normal());
+    change(&mut motion);
+    let (log, mut findings) = read("log.csv", csv(&arm, &motion, 6).as_bytes(), &format(&arm));
+    let found = identify(&arm, &[Input { log, ..Input::default() }], &Options::default(), &mut findings);
+    (found, findings)
+}
+
+/// The columns and texts of a code.
+fn of(findings: &Findings, code: Code) -> Vec<(&str, &str)> {
+    findings
+        .iter()
+        .filter(|finding| finding.code == code)
+        .map(|finding| (finding.column.as_str(), finding.text.as_str()))
+        .collect()
+}
+
+#[test]
+fn every_pattern_of_turned_torques_is_named_and_not_its_complement() {
+    for text in [ELBOW, SCARA] {
+        let arm = arm(text);
+        let n = arm.dof();
+        for pattern in 0..1usize << n {
+            let turned = |j: usize| pattern >> j & 1 == 1;
+            let findings = found(text, &|motion| {
+                (0..motion.tau.len()).filter(|k| turned(k % n)).for_each(|k| motion.tau[k] *= -1.0);
+            });
+            let columns: Vec<String> = (0..n).filter(|&j| turned(j)).map(|j| format!("tau_{}", arm.joints[j].name)).collect();
+            let named = match columns.len() {
+                0 => {
+                    assert!(!findings.has_errors(), "{}", findings.render());
+                    continue;
+                }
+                all if all == n => "all torques".to_owned(),
+                _ => columns.join(", "),
+            };
+            let said = of(&findings, Code::SignSuspected);
+            assert!(said.len() == 1 && said[0].1.contains(&format!("the sign of {named} is turned")), "{}", findings.render());
+        }
+    }
+}
+
+/// Exchanges joints i and k of a state-by-state signal.
+fn exchange(x: &mut [f64], n: usize, i: usize, k: usize) {
+    x.chunks_exact_mut(n).for_each(|state| state.swap(i, k));
+}
+
+#[test]
+fn every_pair_of_exchanged_joints_is_named() {
+    for text in [ELBOW, SCARA] {
+        let arm = arm(text);
+        let n = arm.dof();
+        for (i, k) in [(0, 1), (0, 2), (1, 2)] {
+            for whole in [true, false] {
+                let findings = found(text, &|motion| {
+                    exchange(&mut motion.q, n, i, k);
+                    exchange(&mut motion.dq, n, i, k);
+                    if whole {
+                        exchange(&mut motion.tau, n, i, k);
+                    }
+                });
+                let name = |j: usize| &arm.joints[j].name;
+                let torque = |j: usize| if whole { format!(", tau_{}", name(j)) } else { String::new() };
+                let words = |j: usize, of: usize| format!("q_{0}, dq_{0}{1} hold those of {2}", name(j), torque(j), name(of));
+                let named = format!("{}; {}", words(i, k), words(k, i));
+                let said = of(&findings, Code::JointOrder);
+                assert!(said.len() == 1 && said[0].1.contains(&named), "{named}\n{}", findings.render());
+            }
+        }
+    }
+}
+
+#[test]
+fn degrees_throughout_are_seen_at_the_limits() {
+    let limited = ELBOW.replace("limits: {effort", "limits: {position: [-3, 3], velocity: 4, effort");
+    for joint in 0..3 {
+        // Frozen before and after the motion, as logs are; one joint alone moves far.
+        let findings = found(&limited, &|motion| {
+            for x in [&mut motion.q, &mut motion.dq] {
+                x.iter_mut()
+                    .enumerate()
+                    .for_each(|(k, x)| *x *= 180.0 / std::f64::consts::PI * if k % 3 == joint { 1.0 } else { 0.1 });
+                (0..120).for_each(|k| x[k] = x[120 + k % 3]);
+            }
+            (0..120).for_each(|k| motion.dq[k] = 0.0);
+        });
+        let said = of(&findings, Code::DegreesSuspected);
+        assert!(said.len() == 1 && findings.iter().all(|of| of.code != Code::StuckSignal), "{}", findings.render());
+        assert_eq!(said[0].0, format!("q_{}", arm(ELBOW).joints[joint].name));
+    }
+    assert!(!found(&limited, &|_| {}).has_errors());
+}
+
+#[test]
+fn turns_of_an_encoder_have_their_line() {
+    for joint in 0..3 {
+        let findings = found(ELBOW, &|motion| {
+            let turned = |x: f64| (x + std::f64::consts::PI - 0.3).rem_euclid(std::f64::consts::TAU) - std::f64::consts::PI + 0.3;
+            motion.q.iter_mut().skip(joint).step_by(3).for_each(|q| *q = turned(*q + 3.0));
+        });
+        let line = findings.iter().find(|of| of.code == Code::RateMismatch).map(|of| (of.line, of.column.clone()));
+        assert!(line.as_ref().is_some_and(|(line, column)| *line > 2 && column.starts_with("q_")), "{}", findings.render());
+        assert!(of(&findings, Code::RateMismatch)[0].1.contains("the encoder wraps"), "{}", findings.render());
+    }
+}
+
+#[test]
+fn rates_of_another_slope_or_a_lag_are_named() {
+    for joint in 0..3 {
+        let column = format!("dq_{}", arm(ELBOW).joints[joint].name);
+        for (cutoff, slope, words) in [(0.0, 1.1, "is 1.1"), (0.0, 0.9, "is 0.9"), (5.0, 1.0, "behind"), (2.0, 1.0, "behind")] {
+            let findings = found(ELBOW, &|motion| {
+                let mut random = Random(3);
+                motion.q.iter_mut().for_each(|q| *q += 1e-4 * random.normal());
+                let share = if cutoff > 0.0 { 1.0 - (-std::f64::consts::TAU * cutoff / 50.0f64).exp() } else { 1.0 };
+                let mut last = motion.dq[joint];
+                for dq in motion.dq.iter_mut().skip(joint).step_by(3) {
+                    last += share * (*dq - last);
+                    *dq = slope * last + 1e-3 * random.normal();
+                }
+            });
+            let said = of(&findings, Code::RateMismatch);
+            assert!(said.len() == 1 && said[0].0 == column && said[0].1.contains(words), "{words}\n{}", findings.render());
+        }
+    }
+}
+
+#[test]
+fn intervals_reach_to_both_sides_and_coloured_residuals_are_named() {
+    let (found, findings) = identified(ELBOW, &|_| {});
+    let found = found.unwrap_or_else(|| panic!("{}", findings.render()));
+    let all = found.base.iter().chain(found.friction.iter().map(|of| &of.value));
+    let inside = |of: &armgen_identify::identify::Interval| (of.value - of.low).min(of.high - of.value) / (of.high - of.low);
+    let least = all.map(inside).fold(1.0, f64::min);
+    assert!(least > 0.01, "{least}");
+    let slow = found_help(&|motion| {
+        (0..motion.tau.len()).for_each(|k| motion.tau[k] += 6.0 * (1.3 * motion.t[k / 3]).sin());
+    });
+    assert!(slow.contains("the model or the log is wrong"), "{slow}");
+    assert!(found_help(&|_| {}).contains("log 30 s"));
+}
+
+/// The remedy of a log with few stretches of time.
+fn found_help(change: &dyn Fn(&mut Motion)) -> String {
+    let findings = found(ELBOW, change);
+    let found = findings.iter().find(|of| of.code == Code::ShortLog);
+    found.map_or_else(|| findings.render(), |of| of.help.clone())
+}
