@@ -25,6 +25,30 @@ use serde_json::Value;
 /// The drives of a wrist ride on the forearm, and spin with the joints before theirs.
 const WRIST: &str = include_str!("../data/trees/coupled_wrist.yaml");
 
+/// A wrist of three joints, whose drives are those of `FEW`.
+const SMALL: &str = "
+name: small
+convention: urdf
+gravity: [0.5, -1, -9.81]
+joints:
+  - {name: forearm, type: revolute, axis: [0, 1, 0], link: {mass: 8, com: [0.2, 0, 0.03], inertia: {xx: 0.05, yy: 0.3, zz: 0.3}}}
+  - {name: roll, type: revolute, origin: {xyz: [0.4, 0, 0]}, axis: [1, 0, 0], link: {mass: 2, com: [0.05, 0.01, 0], inertia: {xx: 0.01, yy: 0.02, zz: 0.02}}}
+  - {name: pitch, type: revolute, origin: {xyz: [0.1, 0, 0]}, axis: [0, 1, 0], link: {mass: 1, com: [0.04, 0, 0.02], inertia: {xx: 0.002, yy: 0.003, zz: 0.003}}}
+";
+/// As `ROTORS`, of [`SMALL`].
+const FEW: [Rotor; 2] = [
+    (
+        "roll",
+        "ratio: 9, inertia: 5e-4, on: base, axis: [0, 0, 1], coupling: {forearm: 2}, viscous: 1e-4",
+        "base: {roll: 9, forearm: 2}",
+    ),
+    (
+        "pitch",
+        "ratio: 8, inertia: 4e-4, on: forearm, axis: [1, 0, 0], coupling: {roll: -1}, mass: 0.4, position: [0.1, 0, 0.05]",
+        "forearm: {pitch: 8, roll: -1}",
+    ),
+];
+
 /// What an arm with both keys has: branches, a follower, a slide, a rotor on another branch, on the base, on the last link, and one that is
 /// coupled with a follower. Ratios are whole numbers, so that a joint can follow as the rotor spins.
 const DRIVES: &str = "
@@ -43,8 +67,9 @@ tips:
   - {name: one, joint: hand, tool: {xyz: [0.1, 0, 0]}, payload: {mass: 0.5}}
   - {name: two, joint: slide}
 ";
-/// Of each joint the words of its motor, and the row of the joint that the rotor would have as a body.
-const ROTORS: [(&str, &str, &str); 5] = [
+/// A joint, the words of its motor, and the carrier and the leaders of the joint that its rotor would have as a body.
+type Rotor = (&'static str, &'static str, &'static str);
+const ROTORS: [Rotor; 5] = [
     ("torso", "ratio: 7, inertia: 0.002, on: hand, axis: [1, 0, 0], coupling: {left: -2}", "hand: {torso: 7, left: -2}"),
     ("left", "ratio: -5, inertia: 0.003, viscous: 0.01, mass: 0.3, position: [0.1, 0, 0.2], on: right, axis: [0, 0, 1], coupling: {hand: 3, torso: 1}", "right: {left: -5, hand: 3, torso: 1}"),
     ("elbow", "ratio: 6, inertia: 0.004, on: base, axis: [1, 0, 0], coupling: {right: 2}, viscous: 0.02", "base: {elbow: 6, right: 2}"),
@@ -72,26 +97,38 @@ fn a_coupled_wrist_has_the_values_of_other_programs() {
     }
 }
 
-/// [`DRIVES`] with its motors, or with their rotors as bodies on joints that follow others as these turn.
-fn drives(as_bodies: bool) -> String {
-    let mut text = String::new();
-    for line in DRIVES.trim_start().lines() {
-        let motor = ROTORS.iter().find(|(joint, ..)| line.starts_with(&format!("  - {{name: {joint},")));
+/// An arm with motors, or with their rotors as bodies on joints that follow others as these turn.
+fn driven(arm: &str, rotors: &[Rotor], as_bodies: bool) -> String {
+    let (mut text, mut bodies) = (String::new(), String::new());
+    if as_bodies {
+        bodies = rotors.iter().map(body).collect();
+    }
+    for line in arm.trim_start().lines() {
+        let motor = rotors.iter().find(|(joint, ..)| line.starts_with(&format!("  - {{name: {joint},")));
         match (motor, line.strip_suffix('}')) {
             (Some((_, words, _)), Some(row)) if !as_bodies => text += &format!("{row}, motor: {{{words}}}}}\n"),
             _ => {
-                if line == "tips:" && as_bodies {
-                    text += &ROTORS.map(body).concat();
+                if line == "tips:" {
+                    text += &std::mem::take(&mut bodies);
                 }
                 text += &format!("{line}\n");
             }
         }
     }
-    text
+    if bodies.is_empty() {
+        return text;
+    }
+    // Without `tips` the end effector stays on the last joint before the bodies.
+    let last = arm.lines().rev().find_map(|line| line.strip_prefix("  - {name: ")).and_then(|row| row.split_once(','));
+    format!("{text}{bodies}tip: {}\n", last.expect("a joint").0)
+}
+
+fn small() -> String {
+    driven(SMALL, &FEW, false)
 }
 
 /// The joint of a rotor's body: a mass on the spin axis, and inertia about that axis alone.
-fn body((joint, words, leaders): (&str, &str, &str)) -> String {
+fn body(&(joint, words, leaders): &Rotor) -> String {
     let word = |key: &str| -> Option<&str> {
         let behind = words.split_once(&format!("{key}: "))?.1;
         Some(behind.split_once(if behind.starts_with('[') { "]" } else { "," }).map_or(behind, |(value, _)| value))
@@ -113,8 +150,18 @@ fn body((joint, words, leaders): (&str, &str, &str)) -> String {
 /// such bodies come from recursions alone.
 #[test]
 fn rotors_move_as_bodies_on_joints_that_follow() {
+    rotors_move_as_bodies(SMALL, &FEW);
+}
+
+#[test]
+#[ignore = "wide"]
+fn rotors_on_branches_move_as_bodies_on_joints_that_follow() {
+    rotors_move_as_bodies(DRIVES, &ROTORS);
+}
+
+fn rotors_move_as_bodies(arm: &str, rotors: &[Rotor]) {
     let [motors, bodies] = [false, true].map(|as_bodies| {
-        let text = drives(as_bodies);
+        let text = driven(arm, rotors, as_bodies);
         Interpreted::new(&text).unwrap_or_else(|fault| panic!("{fault}\n{text}"))
     });
     let n = motors.dof();
@@ -158,17 +205,22 @@ fn judged(source: &Source, generated: &Generated, language: Language, text: &str
 
 #[test]
 fn the_checker_proves_coupled_motors_in_every_language() {
-    let drives = drives(false);
-    for (text, languages) in [(WRIST, &Language::ALL[..]), (&drives, &[Language::Rust, Language::C])] {
-        let (source, generated) = generated(text);
-        for &language in languages {
-            let text = generated.in_language(language);
-            assert!(
-                text.contains("MOTOR_RATES") || text.contains("motorRates") || text.contains("motor_rates"),
-                "{}",
-                language.title()
-            );
-            let report = judged(&source, &generated, language, &text);
+    let (source, generated) = generated(&small());
+    for language in Language::ALL {
+        let text = generated.in_language(language);
+        assert!(text.contains("MOTOR_RATES") || text.contains("motorRates"), "{}", language.title());
+        let report = judged(&source, &generated, language, &text);
+        assert!(report.passed(), "{}: {}", language.title(), report.first_fault().unwrap_or_default());
+    }
+}
+
+#[test]
+#[ignore = "wide"]
+fn the_checker_proves_coupled_motors_of_whole_arms() {
+    for text in [WRIST.to_owned(), driven(DRIVES, &ROTORS, false)] {
+        let (source, generated) = generated(&text);
+        for language in [Language::Rust, Language::C] {
+            let report = judged(&source, &generated, language, &generated.in_language(language));
             assert!(report.passed(), "{}: {}", language.title(), report.first_fault().unwrap_or_default());
         }
     }
@@ -186,22 +238,23 @@ fn the_checker_proves_base_parameters_beside_coupled_motors() {
 /// A rotor on another link, a factor of the other sign or left out, an axis turned: each is another robot.
 #[test]
 fn a_module_of_other_motors_is_refused() {
-    let (source, right) = generated(WRIST);
+    let text = small();
+    let (source, right) = generated(&text);
     for (of, by, wrong) in [
-        ("coupling: {J4: -1}", "coupling: {J4: 1}", "inertia_matrix"),
-        ("coupling: {J5: -50, J4: 1}", "coupling: {J4: 1}", "coriolis_matrix"),
-        ("inertia: 5e-4, on: J3", "inertia: 5e-4, on: J2", "inverse_dynamics"),
-        ("coupling: {J4: -1}, mass: 3", "mass: 3", "friction"),
-        ("inertia: 4e-4, on: J3, axis: [-1, 0, 0]", "inertia: 4e-4, on: J3, axis: [1, 0, 0]", "momentum"),
+        ("coupling: {roll: -1}", "coupling: {roll: 1}", "inertia_matrix"),
+        ("on: forearm, axis: [1, 0, 0], coupling: {roll: -1}", "on: forearm, axis: [1, 0, 0]", "momentum"),
+        ("on: base, axis: [0, 0, 1], coupling: {forearm: 2}", "on: base, axis: [0, 0, 1]", "friction"),
+        ("inertia: 4e-4, on: forearm", "inertia: 4e-4, on: roll", "coriolis_matrix"),
+        ("on: forearm, axis: [1, 0, 0]", "on: forearm, axis: [0, 1, 0]", "inverse_dynamics"),
     ] {
-        let other = WRIST.replacen(of, by, 1);
-        assert_ne!(other, WRIST);
+        let other = text.replacen(of, by, 1);
+        assert_ne!(other, text);
         let (_, other) = generated(&other);
         let report = judged(&source, &other, Language::Rust, &other.module);
         let refused: Vec<&str> = report.functions.iter().filter(|f| f.verdict != Equal).map(|f| f.name.as_str()).collect();
         assert!(!report.passed() && refused.contains(&wrong), "{of}: {refused:?}");
     }
-    let swapped = right.module.replacen("[0.0, 0.0, 0.0, -1.0, 80.0, 0.0]", "[0.0, 0.0, 0.0, 1.0, 80.0, 0.0]", 1);
+    let swapped = right.module.replacen("[0.0, -1.0, 8.0]", "[0.0, 1.0, 8.0]", 1);
     assert_ne!(swapped, right.module);
     let report = judged(&source, &right, Language::Rust, &swapped);
     assert!(report.first_fault().is_some_and(|fault| fault.contains("MOTOR_RATES")));
@@ -220,22 +273,31 @@ fn base_parameters_beside_coupled_motors_are_counted_exactly() {
 /// Rows of every convention keep the motors. A URDF has none, and its note names those whose friction it lacks.
 #[test]
 fn conversion_keeps_coupled_motors_and_export_names_them() {
-    for text in [WRIST.to_owned(), drives(false)] {
-        let robot = Interpreted::new(&text).expect("valid");
-        let q: Vec<f64> = [0.3, -0.2, 0.5, 0.7, -0.4, 0.1][..robot.dof()].to_vec();
-        let arguments = Arguments { dq: q.clone(), ddq: q.clone(), q, ..Arguments::default() };
-        for to in [Convention::Standard, Convention::Modified] {
-            let source = Source::new("robot.yaml", text.clone());
-            let (converted, faults) = armgen_import::convert(&source, to);
-            let yaml = converted.unwrap_or_else(|| panic!("{}", faults.render(&source, Colour::Never))).yaml;
-            let other = Interpreted::new(&yaml).unwrap_or_else(|faults| panic!("{faults}\n{yaml}"));
-            for function in ["inertia_matrix", "coriolis_matrix", "friction", "inverse_dynamics"] {
-                let off = deviation(&other.call(function, &arguments), &robot.call(function, &arguments));
-                assert!(off < REFERENCE, "{to:?} {function}: {off:e}\n{yaml}");
-            }
-        }
-    }
+    conversion_keeps(&small());
     let (exported, _) = armgen_import::export(&Source::new("robot.yaml", WRIST));
     let lines = exported.expect("valid").lines;
     assert!(lines.iter().any(|line| line.contains("several joints") && line.ends_with("`J5`, `J6`")), "{lines:?}");
+}
+
+#[test]
+#[ignore = "wide"]
+fn conversion_keeps_coupled_motors_of_whole_arms() {
+    [WRIST.to_owned(), driven(DRIVES, &ROTORS, false)].iter().for_each(|text| conversion_keeps(text));
+}
+
+#[track_caller]
+fn conversion_keeps(text: &str) {
+    let robot = Interpreted::new(text).expect("valid");
+    let q: Vec<f64> = [0.3, -0.2, 0.5, 0.7, -0.4, 0.1][..robot.dof()].to_vec();
+    let arguments = Arguments { dq: q.clone(), ddq: q.clone(), q, ..Arguments::default() };
+    for to in [Convention::Standard, Convention::Modified] {
+        let source = Source::new("robot.yaml", text);
+        let (converted, faults) = armgen_import::convert(&source, to);
+        let yaml = converted.unwrap_or_else(|| panic!("{}", faults.render(&source, Colour::Never))).yaml;
+        let other = Interpreted::new(&yaml).unwrap_or_else(|faults| panic!("{faults}\n{yaml}"));
+        for function in ["inertia_matrix", "coriolis_matrix", "friction", "inverse_dynamics"] {
+            let off = deviation(&other.call(function, &arguments), &robot.call(function, &arguments));
+            assert!(off < REFERENCE, "{to:?} {function}: {off:e}\n{yaml}");
+        }
+    }
 }
