@@ -5,13 +5,14 @@ use armgen_codegen::schedule::{Options, Selection};
 use armgen_codegen::source::Source;
 use armgen_codegen::{validate, Model, Trig};
 use armgen_evaluate::{function, Program};
-use armgen_numbers::{Function, Operand, Operator};
+use armgen_numbers::{Angle, Function, Operand, Operator};
 
 use crate::arms::robots;
 
 /// Functions of a robot of the repository as they are executed; all of them if none is named.
 fn functions(robot: &str, names: &[&str]) -> (Source, Vec<Function<f64>>) {
-    let text = robots().into_iter().find_map(|(name, text)| (name == robot).then_some(text)).expect("a robot");
+    let found = robots().into_iter().find_map(|(name, text)| (name == robot).then_some(text));
+    let text = found.unwrap_or_else(|| include_str!("../../tests/data/trees/helix.yaml").into());
     let source = Source::new(robot, text);
     let (manipulator, places) = validate::read(&source).0.expect("a valid robot");
     let functions = if names.is_empty() { Selection::default() } else { Selection::named(names).expect("functions") };
@@ -40,6 +41,23 @@ fn executed_functions_are_the_equations() {
     all_are_the_equations("scara4");
     let (source, functions) = functions("panda7", &["inertia_matrix", "inverse_dynamics", "direct_kinematics"]);
     assert_eq!(fault(&source, &functions), None);
+}
+
+/// Functions that compute angles, and another factor, another term and another constant of an angle.
+#[test]
+fn executed_angles_are_those_of_the_description() {
+    let (source, sound) = functions("helix", &["inertia_matrix", "gravity"]);
+    assert_eq!(fault(&source, &sound), None);
+    let found = |plant: &dyn Fn(&mut Angle<f64>)| {
+        let mut planted = sound.clone();
+        let angle = planted[1].angles.iter_mut().find(|angle| !angle.factors.is_empty()).expect("it computes an angle");
+        plant(angle);
+        assert!(fault(&source, &planted).expect("not found").starts_with("gravity"));
+    };
+    found(&|angle| angle.factors[1] = Some(0.7850000000000001));
+    found(&|angle| angle.factors[0] = None);
+    found(&|angle| angle.terms[1].1 ^= true);
+    found(&|angle| angle.turn = angle.turn.map(|turn| -turn));
 }
 
 #[test]

@@ -179,8 +179,8 @@ fn a_long_line_of_followers_is_refused_in_bounded_time() {
     // What follows the joint of the arm belongs to it.
     assert_eq!(import(line(10_000, "j", by_two), None), ["too-many-joints"]);
     assert_eq!(import(line(31, "j", "multiplier='-1'"), None).len(), 0);
-    assert!(import(line(31, "j", by_two), None).iter().all(|code| *code == "mimic"));
-    assert_eq!(import(line(31, "j", by_two), None).len(), 27);
+    // The last one turns 2^31 times as far.
+    assert_eq!(import(line(31, "j", by_two), None).len(), 0);
 }
 
 /// A joint that 10 000 others follow, and 10 000 joints on each other, each of which follows the one below it.
