@@ -157,7 +157,7 @@ fn run_or_exit_code(file: &Path, asked: &Asked) -> Result<u8, u8> {
     Ok(code)
 }
 
-/// An error where what exists explains the logs much worse than what does not.
+/// A finding where what exists explains the logs worse than what does not, beyond noise: an error where the sum of squares is more than doubled.
 fn too_far(arm: &Arm, inputs: &[Input], found: &Identified, written: &Written) -> Option<Finding> {
     let (rise, joints) = rise(arm, &found.reduced, &written.consistent);
     let largest = joints.iter().copied().fold(0.0, f64::max);
@@ -169,8 +169,10 @@ fn too_far(arm: &Arm, inputs: &[Input], found: &Identified, written: &Written) -
         "the sum of squares of bodies and friction that can exist is above its least value by {rise:.1} times what noise explains, at {}",
         where_.join(", ")
     );
-    let help = "look at signs, order and units of the columns of these joints, at their axes in the description, and at loads and springs that it lacks: the written numbers do not describe the arm";
-    (rise > 1.0).then(|| Finding::new(Code::PoorFit, &inputs[0].log.name, text, help).as_bad_as(Severity::Error))
+    let help = "look at signs, order and units of the columns of these joints, at their axes in the description, and at loads and springs that it lacks";
+    let of = &written.consistent;
+    let severity = if of.objective > 2.0 * of.unconstrained { Severity::Error } else { Severity::Warning };
+    (rise > 1.0).then(|| Finding::new(Code::PoorFit, &inputs[0].log.name, text, help).as_bad_as(severity))
 }
 
 /// The text with the byte order mark that its file begins with.

@@ -1,5 +1,7 @@
 //! Positions and rates against each other: units, clocks, signs, orders, steps, slopes and lags.
 
+use armgen_codegen::diagnostic::Severity;
+
 use crate::arm::Arm;
 use crate::finding::{Code, Finding, Findings};
 use crate::log::Log;
@@ -127,7 +129,9 @@ pub(super) fn rates(arm: &Arm, log: &Log, period: f64, findings: &mut Findings) 
         let (name, column) = (name_of(arm, i), format!("dq_{}", name_of(arm, i)));
         let help = "look at the unit and the filter of the rate; without the `dq_` columns rates come from positions";
         let text = format!("{column} {text} the derivative of q_{name}");
-        findings.push(Finding::new(Code::RateMismatch, &log.name, text, help).at(first, 0).in_column(column));
+        let finding = Finding::new(Code::RateMismatch, &log.name, text, help).at(first, 0).in_column(column);
+        // Drives filter their rates: most estimates bear it.
+        findings.push(finding.as_bad_as(Severity::Warning));
     }
     false
 }
@@ -212,7 +216,9 @@ pub(super) fn steps(arm: &Arm, log: &Log, period: f64, findings: &mut Findings) 
                 );
                 (text, "look at the encoder and the recorder; leave the samples out, or cut the log there")
             };
-            findings.push(Finding::new(Code::RateMismatch, &log.name, text, help).at(log.lines[k] as usize, 0).in_column(column));
+            let finding = Finding::new(Code::RateMismatch, &log.name, text, help).at(log.lines[k] as usize, 0).in_column(column);
+            // A wrap is certain; another step may be that of the stamps.
+            findings.push(finding.as_bad_as(if wraps { Severity::Error } else { Severity::Warning }));
             found |= wraps;
         }
     }
