@@ -220,7 +220,8 @@ fn groups(shares: Vec<(usize, Rational)>) -> Vec<Vec<(usize, u64, bool)>> {
     };
     let mut groups: Vec<Vec<(usize, Rational)>> = Vec::new();
     for share in shares {
-        let fits = |group: &&mut Vec<(usize, Rational)>| counted(&[group.as_slice(), &[share.clone()]].concat()).is_some();
+        let fits =
+            |group: &&mut Vec<(usize, Rational)>| counted(&[group.as_slice(), std::slice::from_ref(&share)].concat()).is_some();
         match groups.iter_mut().find(fits) {
             Some(group) => group.push(share),
             None => groups.push(vec![share]),
