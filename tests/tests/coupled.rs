@@ -82,7 +82,7 @@ fn coupled_arms_have_the_values_of_other_programs() {
     }
 }
 
-fn generated(text: &str) -> (Source, Generated) {
+pub(crate) fn generated(text: &str) -> (Source, Generated) {
     chosen(text, Selection::default())
 }
 
@@ -93,7 +93,7 @@ fn chosen(text: &str, functions: Selection) -> (Source, Generated) {
     (source, generated)
 }
 
-fn judged(source: &Source, generated: &Generated, language: Language, text: &str) -> Report {
+pub(crate) fn judged(source: &Source, generated: &Generated, language: Language, text: &str) -> Report {
     let claims = Claims::from_numbers(&generated.constants).expect("short formulas");
     verify_with(source, ModuleText { language, text }, claims, Effort { points: 2, exact_points: 1, seed: 1 })
 }

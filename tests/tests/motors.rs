@@ -5,22 +5,17 @@ use armgen_codegen::derive::base;
 use armgen_codegen::description::Convention;
 use armgen_codegen::diagnostic::Colour;
 use armgen_codegen::emit::Language;
-use armgen_codegen::program::Trig;
-use armgen_codegen::schedule::Options;
 use armgen_codegen::source::Source;
 use armgen_codegen::validate;
-use armgen_codegen::{Generated, Model};
+use armgen_codegen::Model;
 use armgen_tests::functions::{Arguments, Functions};
 use armgen_tests::interpreter::Interpreted;
 use armgen_tests::precision::{deviation, REFERENCE};
 use armgen_tests::random::Random;
-use armgen_verify::checker::Effort;
-use armgen_verify::claims::Claims;
-use armgen_verify::reader::ModuleText;
-use armgen_verify::report::Report;
 use armgen_verify::report::Verdict::Equal;
-use armgen_verify::verify_with;
 use serde_json::Value;
+
+use crate::coupled::{generated, judged};
 
 /// The drives of a wrist ride on the forearm, and spin with the joints before theirs.
 const WRIST: &str = include_str!("../data/trees/coupled_wrist.yaml");
@@ -189,18 +184,6 @@ fn rotors_move_as_bodies(arm: &str, rotors: &[Rotor]) {
         let off = deviation(&found, &expected);
         assert!(off < REFERENCE, "{function}: {off:e}");
     }
-}
-
-fn generated(text: &str) -> (Source, Generated) {
-    let source = Source::new("robot.yaml", text);
-    let (generated, faults) = armgen_codegen::generate(&source, &Options { trig: Trig::Fast, ..Options::default() });
-    let generated = generated.unwrap_or_else(|| panic!("{}", faults.render(&source, Colour::Never)));
-    (source, generated)
-}
-
-fn judged(source: &Source, generated: &Generated, language: Language, text: &str) -> Report {
-    let claims = Claims::from_numbers(&generated.constants).expect("short formulas");
-    verify_with(source, ModuleText { language, text }, claims, Effort { points: 2, exact_points: 1, seed: 1 })
 }
 
 #[test]

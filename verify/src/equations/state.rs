@@ -106,28 +106,8 @@ impl<E: Element> State<E> {
         let computed = angles.factors(arithmetic).unwrap_or_default();
         let angles = angles.draw(arithmetic);
         let (zero, one) = (arithmetic.integer(0), arithmetic.integer(1));
-        let (stribeck, stribeck_velocities) = (vec![zero.clone(); n], vec![one.clone(); n]);
         let [pi, g0] = [Vec::new(), Vec::new()];
-        let (directions, smooth) = (signs.clone(), vec![false; signs.len()]);
-        State {
-            angles,
-            computed,
-            q,
-            dq,
-            ddq,
-            dqr,
-            ddqr,
-            tau,
-            signs,
-            directions,
-            smooth,
-            stribeck,
-            stribeck_velocities,
-            pi,
-            g0,
-            zero,
-            one,
-        }
+        State { computed, ..State::of(Arguments { pi, q, dq, ddq, dqr, ddqr, tau, g0 }, angles, signs, [zero, one]) }
     }
 
     /// The state as dual numbers: joint variables change with `along`, rates with `rates`, everything else is constant.
