@@ -113,15 +113,20 @@ pub fn picture(source: &Source, nonce: &str) -> (Option<String>, Diagnostics) {
     let functions = Selection::named(FUNCTIONS).expect("names of the catalogue");
     let Some(module) = derived(&model, &places, functions, &mut diagnostics) else { return (None, diagnostics) };
     let whole = Whole { cost: document::LATER, equations: document::LATER, data: None, nonce: Some(nonce) };
-    let page = whole.page(source, &model, module, &Determinant::new(&model), &[], &diagnostics);
+    let page = whole.page(source, &model, module, &Determinant::without_common_factors(&model), &[], &diagnostics);
     (Some(page), diagnostics)
 }
 
 /// The second step, of the arm's model and the programs of all its functions: the content of the sections of equations and costs, and the
-/// equations for the script.
+/// equations and the factors of the determinant for the script.
 pub fn rest(model: &Model, module: &Module) -> Value {
     let equations = equations::Equations::new(model);
-    json!({ "equations": equations.section(), "cost": cost::table(module), "data": equations.data() })
+    json!({
+        "equations": equations.section(),
+        "cost": cost::table(module),
+        "data": equations.data(),
+        "determinant": equations.determinant.factors,
+    })
 }
 
 /// The programs of functions; `None` after a fault.

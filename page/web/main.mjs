@@ -12,6 +12,7 @@ import { Picture } from "./picture.mjs";
 import { postures } from "./postures.mjs";
 import { settings } from "./settings.mjs";
 import { sheet } from "./sheet.mjs";
+import { whereSingular } from "./singular.mjs";
 import { player, sliders } from "./sliders.mjs";
 import { home, State } from "./state.mjs";
 import { workspace } from "./workspace.mjs";
@@ -77,6 +78,8 @@ function later(parts) {
         if (place) place.outerHTML = parts[name];
     }
     data.equations = parts.data;
+    data.determinant = parts.determinant;
+    byId("singular-where").replaceChildren(...whereSingular(data));
     rest();
     state.changed("motion");
     document.documentElement.dataset.whole = String(Math.round(performance.now()));

@@ -46,6 +46,18 @@ test("an arm is drawn, and its equations follow", async () => {
     quiet(page);
 });
 
+test("the second step brings the factors that all minors share", async () => {
+    const page = await opened();
+    await page.run(put(repository("tests/data/iiwa14.yaml"), "iiwa14.yaml"));
+    await page.run("document.querySelector('#link').click()");
+    await page.until("location.hash.length > 1");
+    const other = await opened(await page.run("location.hash"));
+    await other.until("document.documentElement.dataset.whole");
+    await other.call("Target.setAutoAttach", { autoAttach: true, waitForDebuggerOnStart: false, flatten: true, filter: [{ type: "iframe" }] });
+    const frame = await other.frame();
+    assert.match(await frame.run("document.querySelector('#singular-where').textContent"), /^Singular wherever q₄ = 0/);
+});
+
 test("a fault is underlined at its place, its remedy put in by a click", async () => {
     const page = await opened();
     const text = repository("robots/scara.yaml");
