@@ -208,18 +208,21 @@ impl<T: Scalar> Run<'_, T> {
         lanes
     }
 
+    /// A term of an angle without its sign.
+    #[inline(always)]
+    fn term<const L: usize>(&self, angle: &Angle<T>, i: usize, first: usize) -> [T; L] {
+        let mut term: [T; L] = self.read(angle.argument, angle.terms[i].0, first);
+        if let Some(Some(factor)) = angle.factors.get(i) {
+            term.iter_mut().for_each(|x| *x = *factor * *x);
+        }
+        term
+    }
+
     #[inline(always)]
     fn angle<const L: usize>(&self, angle: &Angle<T>, first: usize) -> [T; L] {
-        let term = |i: usize| {
-            let mut term: [T; L] = self.read(angle.argument, angle.terms[i].0, first);
-            if let Some(Some(factor)) = angle.factors.get(i) {
-                term.iter_mut().for_each(|x| *x = *factor * *x);
-            }
-            term
-        };
-        let mut sum = term(0);
+        let mut sum = self.term(angle, 0, first);
         for (k, &(_, minus)) in angle.terms.iter().enumerate().skip(1) {
-            let term = term(k);
+            let term = self.term::<L>(angle, k, first);
             for i in 0..L {
                 sum[i] = if minus { sum[i] - term[i] } else { sum[i] + term[i] };
             }

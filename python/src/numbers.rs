@@ -3,7 +3,7 @@
 //! A call of one state whose arguments are vectors of float64 goes straight to the program. Every other call makes such arrays first: leading
 //! axes are states and broadcast.
 
-use std::sync::{Arc, Mutex, PoisonError};
+use std::sync::{Arc, Mutex, OnceLock, PoisonError};
 
 use armgen_codegen::catalogue::{Length, Quantity};
 use armgen_codegen::program::{Cost, Function as Steps, Module};
@@ -149,10 +149,13 @@ pub(crate) fn on_threads(threads: usize, work: impl Fn() + Sync) {
 
 /// How many threads share a work for which `threads` are asked: 0 is as many as there are processors, and there are no more than these.
 pub(crate) fn granted(threads: usize) -> usize {
-    let processors = std::thread::available_parallelism().map_or(1, usize::from);
+    // Asking the system takes longer than hundreds of states.
+    static PROCESSORS: OnceLock<usize> = OnceLock::new();
+    let processors = || *PROCESSORS.get_or_init(|| std::thread::available_parallelism().map_or(1, usize::from));
     match threads {
-        0 => processors,
-        threads => threads.min(processors),
+        0 => processors(),
+        1 => 1,
+        threads => threads.min(processors()),
     }
 }
 
