@@ -3,7 +3,7 @@
 use std::sync::{Arc, Mutex, PoisonError};
 
 use armgen_evaluate::{Postures as Found, Redundancy, Verdict};
-use numpy::{PyArray1, PyArray2, PyArrayDyn, PyArrayMethods, PyReadonlyArrayDyn, PyUntypedArrayMethods};
+use numpy::{PyArray1, PyArray2, PyArrayDyn, PyArrayMethods, PyReadonlyArray2, PyReadonlyArrayDyn, PyUntypedArrayMethods};
 use pyo3::exceptions::{PyTypeError, PyValueError};
 use pyo3::prelude::*;
 use pyo3::types::{PyList, PyTuple};
@@ -68,6 +68,14 @@ pub(crate) fn solved<'py>(
 ) -> PyResult<Bound<'py, PyAny>> {
     let solver = robot.solver(py)?;
     let threads = usize::try_from(threads).map_err(|_| PyValueError::new_err(format!("threads: 0 or more, not {threads}")))?;
+    if let (Some(pose), None, None, None, None) =
+        (&target.pose, &target.position, &target.rotation, &redundancy, &solver.of().redundancy)
+    {
+        if let Some(pose) = entries(pose) {
+            let found = solver.solve(&pose, None).expect("the arm has no redundancy");
+            return Ok(Bound::new(py, Postures::new(robot, found, &pose))?.into_any());
+        }
+    }
     let numpy = py.import("numpy")?;
     let part = |name, shape, given: &_| Part::new(&numpy, name, shape, given);
     let mut parts = match (&target.pose, &target.position, &target.rotation) {
@@ -139,11 +147,15 @@ pub(crate) fn solved<'py>(
         };
         py.detach(|| on_threads(granted(threads).min(states.div_ceil(MANY)), work));
     }
-    let named = |(state, found): (usize, Found<f64>)| {
-        let reason = (found.verdict == Verdict::Invalid).then(|| why_invalid(&pose(state)));
-        Postures { robot: robot.clone(), found, reason }
-    };
+    let named = |(state, found)| Postures::new(robot, found, &pose(state));
     nested(py, &lead, &mut found.into_iter().flatten().enumerate().map(named))
+}
+
+/// The entries of a single pose that is an array of float64 by rows already.
+fn entries(pose: &Bound<'_, PyAny>) -> Option<[[f64; 4]; 4]> {
+    let pose: PyReadonlyArray2<'_, f64> = pose.extract().ok()?;
+    let (rows, _) = pose.as_slice().ok()?.as_chunks();
+    rows.try_into().ok().filter(|_| pose.shape() == [4, 4])
 }
 
 /// Why a pose, or the redundancy beside it, has the verdict `Invalid`.
@@ -207,6 +219,11 @@ pub(crate) struct Postures {
 }
 
 impl Postures {
+    fn new(robot: &Arc<Robot>, found: Found<f64>, pose: &[[f64; 4]; 4]) -> Postures {
+        let reason = (found.verdict == Verdict::Invalid).then(|| why_invalid(pose));
+        Postures { robot: robot.clone(), found, reason }
+    }
+
     fn dof(&self) -> usize {
         self.robot.model.manipulator.dof()
     }
