@@ -176,6 +176,9 @@ test("a long text and what is no robot are judged", async () => {
         await page.run(put(text, "a.yaml"));
         await page.until(`document.querySelector('#verdict').textContent !== ${JSON.stringify(before)}`);
         assert.match(await page.run("document.querySelector('#verdict').textContent"), /^\d+ errors?/, text.slice(0, 20));
+        if (text.startsWith("a: 1")) {
+            assert.deepEqual(await page.run("[document.querySelector('#verdict').textContent, document.querySelector('[data-more]').textContent]"), ["50001 errors", "and 49501 more: mend these first"]);
+        }
     }
     quiet(page);
 });

@@ -11,6 +11,8 @@ export class Editor {
         this.gutter = gutter;
         /** @type {import("./places.mjs").Diagnostic[]} */
         this.diagnostics = [];
+        /** Where the lines of a text begin, for the last text that was asked for. */
+        this.lines = { text: "", starts: [0] };
         field.addEventListener("input", () => {
             // Until the new text is judged, the marks of the old one are nobody's.
             this.mark([]);
@@ -26,9 +28,17 @@ export class Editor {
         this.mark([]);
     }
 
+    /** Where each line begins. */
+    get starts() {
+        const text = this.text;
+        if (this.lines.text !== text) this.lines = { text, starts: lineStarts(text) };
+        return this.lines.starts;
+    }
+
     /** The ranges of a diagnostic, its own first. @param {import("./places.mjs").Diagnostic} diagnostic */
     ranges(diagnostic) {
-        const [text, starts] = [this.text, lineStarts(this.text)];
+        const { starts } = this;
+        const { text } = this.lines;
         const places = diagnostic.labels.length > 0 ? diagnostic.labels : [diagnostic];
         return places.map((place) => range(text, starts, place));
     }
@@ -36,8 +46,7 @@ export class Editor {
     /** Underlines diagnostics. @param {import("./places.mjs").Diagnostic[]} diagnostics */
     mark(diagnostics) {
         this.diagnostics = diagnostics;
-        const text = this.text;
-        const starts = lineStarts(text);
+        const { text, starts } = this;
         const own = diagnostics.map((diagnostic) => {
             const [from, to] = this.ranges(diagnostic)[0];
             return { from, to, severity: diagnostic.severity };
@@ -71,8 +80,8 @@ export class Editor {
         this.field.focus();
         this.field.setSelectionRange(from, to);
         const scroller = this.layer.closest(".editor");
-        const line = lineStarts(this.text).findLastIndex((start) => start <= from);
-        const height = this.layer.scrollHeight / (lineStarts(this.text).length + 1);
+        const line = this.starts.findLastIndex((start) => start <= from);
+        const height = this.layer.scrollHeight / (this.starts.length + 1);
         if (scroller) scroller.scrollTop = Math.max(0, line * height - scroller.clientHeight / 3);
     }
 

@@ -10,6 +10,9 @@ import { zip } from "./zip.mjs";
 /** How long nobody types before a text is judged, ms. */
 const PAUSE = 150;
 
+/** So many faults are listed and underlined: a browser needs seconds for ten thousands. */
+const MANY = 500;
+
 const packed = byId("packed");
 const engine = new Engine(byId("worker").textContent, { text: packed.textContent, length: Number(packed.dataset.length) });
 packed.remove();
@@ -43,7 +46,7 @@ async function judge() {
     if (own !== version || !answer) return;
     const judged = isModel ? (answer.file ?? {}) : answer;
     const diagnostics = judged.diagnostics ?? [];
-    editor.mark(diagnostics);
+    editor.mark(diagnostics.slice(0, MANY));
     const valid = isModel ? answer.yaml : answer.valid;
     description = valid ? (isModel ? { name: "robot.yaml", text: answer.yaml } : { name: file.name, text }) : null;
     listFaults(diagnostics, answer.fault);
@@ -68,7 +71,7 @@ function verdict(diagnostics, fault) {
 
 /** @param {import("./places.mjs").Diagnostic[]} diagnostics @param {string | undefined} fault */
 function listFaults(diagnostics, fault) {
-    const items = diagnostics.map((diagnostic) => {
+    const items = diagnostics.slice(0, MANY).map((diagnostic) => {
         const { code, severity, line, column, message, help, labels } = diagnostic;
         const place = html("button", { type: "button", class: "place" }, `line ${line}`);
         place.addEventListener("click", () => editor.show(diagnostic));
@@ -105,6 +108,8 @@ function listFaults(diagnostics, fault) {
         }
         return item;
     });
+    const more = diagnostics.length - items.length;
+    if (more > 0) items.push(html("li", { "data-more": more }, `and ${more} more: mend these first`));
     if (fault) items.unshift(html("li", { class: "error" }, html("p", {}, fault)));
     byId("faults").replaceChildren(...items);
     followCaret();
