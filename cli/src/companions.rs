@@ -21,13 +21,15 @@ const fn of(language: Language, file: [&'static str; 2], with: [&'static str; 2]
 }
 
 /// The longest names first, where one ends like another.
-const COMPANIONS: [Companion; 20] = [
+const COMPANIONS: [Companion; 22] = [
     of(Language::Rust, ["", "_ik_c.rs"], ["", "_ik.rs"], "--c-abi --ik"),
     of(Language::Rust, ["", "_ik.h"], ["", "_ik.rs"], "--c-abi --ik"),
     of(Language::Rust, ["", "_ik.rs"], ["", ".rs"], "--ik"),
     of(Language::Rust, ["", "_bounds.rs"], ["", ".rs"], "--bounds"),
     of(Language::Rust, ["", "_runtime.rs"], ["", ".rs"], "--runtime"),
     of(Language::Rust, ["", "_test.rs"], ["", ".rs"], "--tests"),
+    of(Language::Rust, ["", "_laws_c.rs"], ["", ".rs"], "--c-abi --runtime"),
+    of(Language::Rust, ["", "_laws.h"], ["", ".rs"], "--c-abi --runtime"),
     of(Language::Rust, ["", "_c.rs"], ["", ".rs"], "--c-abi"),
     of(Language::Rust, ["", ".h"], ["", ".rs"], "--c-abi"),
     of(Language::C, ["", "_ik_test.c"], ["", "_ik.h"], "--tests --ik"),

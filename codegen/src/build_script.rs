@@ -230,20 +230,23 @@ impl Robot {
         let own = || self.description.file_stem().map_or("robot".into(), |s| s.to_string_lossy().into_owned());
         let stem = self.stem.clone().unwrap_or_else(own);
         let ik = crate::validate::module_name(&format!("{stem}_ik"));
-        let mut all_solutions = Vec::new();
+        let mut others = Vec::new();
         let mut runtime = generated.runtime.clone();
         if self.inverse_kinematics {
-            all_solutions.push((format!("{stem}_ik.rs"), generated.inverse_kinematics()));
+            others.push((format!("{stem}_ik.rs"), generated.inverse_kinematics()));
             runtime = generated.runtime_with_inverse_kinematics(&ik);
             if let (true, Some(face)) = (self.c_abi, generated.inverse_kinematics_for_c()) {
-                all_solutions.extend([(format!("{stem}_ik.h"), face.header), (format!("{stem}_ik_c.rs"), face.wrappers)]);
+                others.extend([(format!("{stem}_ik.h"), face.header), (format!("{stem}_ik_c.rs"), face.wrappers)]);
             }
+        }
+        if let Some(face) = self.c_abi.then(|| generated.laws_for_c(&format!("{stem}.h"))).flatten() {
+            others.extend([(format!("{stem}_laws.h"), face.header), (format!("{stem}_laws_c.rs"), face.wrappers)]);
         }
         let mut files = vec![(format!("{stem}.rs"), generated.module), (format!("{stem}_runtime.rs"), runtime)];
         if self.c_abi {
             files.extend([(format!("{stem}.h"), generated.c.header), (format!("{stem}_c.rs"), generated.c.wrappers)]);
         }
-        files.extend(all_solutions);
+        files.extend(others);
         let mut written = Vec::new();
         for (name, text) in files {
             let file = out.join(name);

@@ -161,6 +161,12 @@ impl Generated {
         emit::c::print_inverse_kinematics(&self.program, self.construction(), &self.origin)
     }
 
+    /// Laws of the runtime for C, `robot_laws.h` and `robot_laws_c.rs`, to be included next to the module and its traits. `header`: the file of
+    /// [`Generated::c`]. `None` of an arm without dynamics, and of one with several end effectors.
+    pub fn laws_for_c(&self, header: &str) -> Option<CFace> {
+        emit::c::print_laws(&self.program, &self.origin, header)
+    }
+
     /// Inverse kinematics in C alone, `robot_ik.h`: the calls of the header of `inverse_kinematics_for_c`, with their bodies. For
     /// an arm without a construction it holds a comment with the reason. An error is a fault of this program.
     pub fn inverse_kinematics_in_c(&self) -> Result<String, String> {

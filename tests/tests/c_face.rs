@@ -140,6 +140,97 @@ fn a_c_program_links_and_finds_the_values_of_the_scara() {
     check("scara.yaml", Scalar::F32, "c_face_f32");
 }
 
+/// The program that prints what C should, and the library that C links. Without `std` there is no allocator, and a panic that can be reached
+/// would need a function that is nowhere.
+const LAWS_TOML: &str = r#"
+[package]
+name = "laws"
+edition = "2021"
+KIND
+
+[dependencies]
+armgen-runtime = { path = "RUNTIME" }
+libm = "0.2"
+nalgebra = { version = "0.35", default-features = false }
+
+[profile.release]
+panic = "abort"
+lto = true
+codegen-units = 1
+
+[workspace]
+"#;
+
+const LAWS_RS: &str = r#"
+#![no_std]
+
+#[allow(dead_code)]
+mod robot {
+    include!("robot.rs");
+    include!("robot_runtime.rs");
+    include!("robot_laws_c.rs");
+}
+
+extern "C" {
+    fn a_panic_can_be_reached() -> !;
+}
+
+#[panic_handler]
+fn panic(_: &core::panic::PanicInfo) -> ! {
+    unsafe { a_panic_can_be_reached() }
+}
+"#;
+
+/// Torques and anchors of hand guiding and impedance, all their parts, and faults.
+#[test]
+#[ignore = "wide"]
+fn laws_in_c_have_the_bits_of_the_runtime() {
+    let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join("c_laws");
+    let _ = fs::remove_dir_all(&folder);
+    let generated = generate_of("scara.yaml", Scalar::F64, Selection::default());
+    let laws = generated.laws_for_c("robot.h").expect("an arm with dynamics and one end effector");
+    let runtime = root().join("runtime").canonicalize().unwrap();
+    for (package, kind, main) in [
+        ("library", "[lib]\ncrate-type = [\"staticlib\"]", ("lib.rs", LAWS_RS.to_owned())),
+        ("expected", "", ("main.rs", fs::read_to_string(root().join("tests/c/laws.rs")).unwrap())),
+    ] {
+        let package = folder.join(package);
+        fs::create_dir_all(package.join("src")).unwrap();
+        let write = |name: &str, text: &str| fs::write(package.join(name), text).unwrap();
+        let toml = LAWS_TOML.replace("KIND", kind).replace("RUNTIME", runtime.to_str().unwrap());
+        write("Cargo.toml", &toml);
+        fs::copy(root().join("Cargo.lock"), package.join("Cargo.lock")).unwrap();
+        write("src/robot.rs", &generated.module);
+        write("src/robot_runtime.rs", &generated.runtime);
+        write("src/robot_laws_c.rs", &laws.wrappers);
+        write(&format!("src/{}", main.0), &main.1);
+        run(Command::new(env!("CARGO"))
+            .args(["build", "--release", "--offline", "--quiet"])
+            .current_dir(&package)
+            .env("CARGO_TARGET_DIR", folder.join("target"))
+            .env_remove("RUSTFLAGS"));
+    }
+    fs::write(folder.join("robot.h"), &generated.c.header).unwrap();
+    fs::write(folder.join("robot_laws.h"), &laws.header).unwrap();
+    run(Command::new("cc")
+        .args(["-std=c99", "-pedantic", "-Wall", "-Wextra", "-Werror", "-O1", "-I.", "-o", "check"])
+        .arg(root().join("tests/c/laws.c").canonicalize().unwrap())
+        .args(["target/release/liblaws.a", "-lm"])
+        .current_dir(&folder));
+    let printed = |program: PathBuf| {
+        let output = Command::new(&program).output().unwrap_or_else(|error| panic!("{program:?}: {error}"));
+        assert!(output.status.success(), "{program:?}: {}", output.status);
+        String::from_utf8(output.stdout).unwrap()
+    };
+    let expected = printed(folder.join("target/release/laws"));
+    assert_eq!(expected.lines().count(), 34);
+    assert_eq!(printed(folder.join("check")), expected);
+    if armgen_tests::installed::there("c++", "g++") {
+        fs::write(folder.join("header.cpp"), "#include \"robot_laws.h\"\n").unwrap();
+        run(Command::new("c++").args(["-Wall", "-Wextra", "-Werror", "-fsyntax-only", "header.cpp"]).current_dir(&folder));
+    }
+}
+
 /// The macros of a header that callers see, each once, with their values; `SAME_BITS` has two.
 fn macros(header: &str, own: &str) -> BTreeMap<String, String> {
     const INNER: [&str; 8] = ["UNFUSED", "INLINE", "SIN(x)", "COS(x)", "VECTOR_LANES", "VECTOR_AT(from)", "SAME_BITS", "LANES"];
@@ -178,7 +269,9 @@ fn unsafe_is_confined_and_explained() {
         let generated = generate_of(robot, Scalar::F64, Selection::default());
         assert!(!generated.module.contains("unsafe") && !generated.runtime.contains("unsafe"));
         assert!(!generated.inverse_kinematics().contains("unsafe"));
-        let wrappers = generated.c.wrappers.clone() + &generated.inverse_kinematics_for_c().expect("a construction").wrappers;
+        let laws = generated.laws_for_c("robot.h").expect("an arm with dynamics").wrappers;
+        let wrappers =
+            generated.c.wrappers.clone() + &laws + &generated.inverse_kinematics_for_c().expect("a construction").wrappers;
         let lines: Vec<&str> = wrappers.lines().collect();
         let blocks = lines.iter().enumerate().filter(|(_, line)| line.contains("unsafe {"));
         for (at, line) in blocks {

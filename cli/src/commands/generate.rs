@@ -525,6 +525,11 @@ impl Requested<'_> {
             (self.out.with_extension("h"), self.generated.c.header.clone()),
             self.file("_c.rs", self.generated.c.wrappers.clone()),
         ];
+        let header = format!("{}.h", self.stem());
+        if let Some(face) = self.beside.runtime.then(|| self.generated.laws_for_c(&header)).flatten() {
+            files.push(self.file("_laws.h", face.header));
+            files.push(self.file("_laws_c.rs", face.wrappers));
+        }
         if let Some(face) = self.beside.ik.then(|| self.generated.inverse_kinematics_for_c()).flatten() {
             files.push(self.file("_ik.h", face.header));
             files.push(self.file("_ik_c.rs", face.wrappers));

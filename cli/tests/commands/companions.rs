@@ -167,6 +167,10 @@ fn the_face_for_c_stands_beside_the_module() {
     assert!(runtime.contains("impl armgen_runtime::"), "{runtime}");
     let header = fs::read_to_string(folder.join("robot.h")).expect("the header");
     assert!(header.contains("void scara_inertia_matrix("), "{header}");
+    let laws = fs::read_to_string(folder.join("robot_laws.h")).expect("the header of the laws");
+    assert!(laws.contains("#include \"robot.h\"") && laws.contains("int scara_hand_guiding("), "{laws}");
+    let wrappers = fs::read_to_string(folder.join("robot_laws_c.rs")).expect("the wrappers of the laws");
+    assert!(wrappers.contains("pub unsafe extern \"C\" fn scara_impedance("), "{wrappers}");
     let wrappers = fs::read_to_string(folder.join("robot_c.rs")).expect("the wrappers");
     assert!(wrappers.contains("pub unsafe extern \"C\" fn scara_inertia_matrix("), "{wrappers}");
 }

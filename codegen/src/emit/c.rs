@@ -9,6 +9,7 @@ mod from_rust;
 mod header;
 mod inverse_kinematics;
 mod kernels;
+mod laws;
 mod solver;
 mod standalone;
 mod syntax;
@@ -17,6 +18,7 @@ use self::header::macro_of;
 #[doc(hidden)]
 pub use self::header::{base_parameters_comment, function_comment, parameters_comment};
 pub use self::inverse_kinematics::print_inverse_kinematics;
+pub use self::laws::print as print_laws;
 pub use self::solver::{print as print_solver, print_test as print_solver_test};
 use super::{Language, Notes, Origin};
 use crate::catalogue::Quantity;

@@ -106,6 +106,11 @@ pub fn print_runtime(module: &Module, origin: &Origin) -> String {
     head(origin, &[]) + &notes + &runtime::implementation(module).map_or_else(String::new, format)
 }
 
+/// Whether the runtime's traits of dynamics are implemented for the module.
+pub(in crate::emit) fn has_dynamics(module: &Module) -> bool {
+    runtime::is_implemented(module, "Dynamics")
+}
+
 /// The comment with the origin of a file, and notes below it.
 pub(in crate::emit) fn head(origin: &Origin, notes: &[String]) -> String {
     commented(&crate::emit::head::lines(origin, notes))

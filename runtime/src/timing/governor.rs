@@ -1,6 +1,6 @@
 //! Stops, overrides and resumes on a timed path, within all limits.
 
-use super::inner::HalfPlanes;
+use super::inner::{HalfPlanes, Trial};
 use super::law::Law;
 use super::model::JointFriction;
 use super::segment::{Assumed, Inner, Segment};
@@ -255,7 +255,13 @@ impl<'a, T: RealField + Copy, const N: usize> Governor<'a, T, N> {
             _ => ((timed.x2 * lit(0.25)).min(if x > zero { x } else { timed.x2 }), Phase::GoingOn),
         };
         let (width, here) = (one - from, timed.x(from));
-        let part = if from > zero { whole.part(from) } else { *whole };
+        let rest;
+        let part = if from > zero {
+            rest = whole.part(from);
+            &rest
+        } else {
+            whole
+        };
         let scale = match (here > zero, timed.x2 > zero) {
             (true, _) => (x / here).min(one),
             (false, true) => target / timed.x2,
@@ -263,14 +269,24 @@ impl<'a, T: RealField + Copy, const N: usize> Governor<'a, T, N> {
         };
         let others = candidates(&self.timing, whole, Some(scale));
         let others = others.into_iter().flatten().map(|rows| Rows { k: rows.k * width * width, ..rows });
+        let (limits, friction, next) = (&self.timing.limits, &self.timing.friction, self.next(self.segment));
+        let mut trial = Trial::new(part, limits, friction, x);
         let mut best: Option<(T, T, Law<T>, Rows<T>)> = None;
         for rows in current.into_iter().chain(others) {
-            let Some([low, high]) = rows.planes(&self.timing, &part, self.next(self.segment)).interval_from(x) else { continue };
-            for x2 in [target.max(low).min(high), high] {
+            let off = |x2: T| (x2 - target).abs();
+            let is_nearer = |x2: T| best.as_ref().is_none_or(|(least, ..)| off(x2) < *least);
+            let nearest = |[low, high]: [T; 2]| target.max(low).min(high);
+            let found = trial.interval(rows.k, &rows.assumed, next, |ends| is_nearer(nearest(ends)));
+            let Some(ends) = found else { continue };
+            // A law that rests on its way gives way to the largest X2.
+            for x2 in [nearest(ends), ends[1]] {
                 let law = Law { length: part.length, x0: x, k: rows.k, x2 };
-                let (off, duration) = ((x2 - target).abs(), law.duration());
-                if duration.is_finite() && best.as_ref().is_none_or(|(least, ..)| off < *least) {
-                    best = Some((off, duration, law, rows));
+                let duration = law.duration();
+                if duration.is_finite() {
+                    if is_nearer(x2) {
+                        best = Some((off(x2), duration, law, rows));
+                    }
+                    break;
                 }
             }
             // Nothing is nearer: at the speed of the timed motion its own rows are the only ones.
@@ -282,12 +298,6 @@ impl<'a, T: RealField + Copy, const N: usize> Governor<'a, T, N> {
         (self.law, self.rows, self.duration, self.time) = (law, rows, duration, zero);
         (self.from, self.phase) = (from, phase);
         true
-    }
-}
-
-impl<T: RealField + Copy> Rows<T> {
-    fn planes<const N: usize>(&self, timing: &Timing<'_, T, N>, segment: &Segment<T, N>, next: [T; 2]) -> HalfPlanes<T, N> {
-        HalfPlanes::new(segment, &timing.limits, &timing.friction, self.k, &self.assumed, next)
     }
 }
 
@@ -324,7 +334,10 @@ fn candidates<T: RealField + Copy, const N: usize>(
 fn backwards<T: RealField + Copy, const N: usize>(timing: &Timing<'_, T, N>, segment: &Segment<T, N>, next: [T; 2]) -> [T; 2] {
     let mut found = [None; ROWS];
     for (to, rows) in found.iter_mut().zip(candidates(timing, segment, None)) {
-        *to = rows.and_then(|rows| rows.planes(timing, segment, next).backwards(rows.assumed.x[0], rows.assumed.x[1]));
+        *to = rows.and_then(|Rows { k, assumed }| {
+            let planes = HalfPlanes::new(segment, &timing.limits, &timing.friction, k, &assumed, next);
+            planes.backwards(assumed.x[0], assumed.x[1])
+        });
     }
     let mut all = segment.inner.interval;
     for _ in 0..ROWS {

@@ -21,13 +21,58 @@ struct HalfPlane<T> {
     most: T,
 }
 
+/// The half-planes of a row for k; `None` where its limit is infinite or cannot bind.
+fn of_row<T: RealField + Copy, const N: usize>(
+    segment: &Segment<T, N>,
+    index: usize,
+    limits: &Limits<T, N>,
+    friction: &[JointFriction<T>; N],
+    k: T,
+    assumed: &Assumed<T>,
+    window: &Window<T>,
+) -> Option<[HalfPlane<T>; 5]> {
+    let most = assumed.x[1];
+    let row = segment.row(index, limits, friction, false)?;
+    let slack = row.bound.abs() * lit(ROUNDING) + row.m_error * assumed.u + row.v_error * most.sqrt() + row.d_error;
+    // Speed that the bound does not reach.
+    if index >= Segment::<T, N>::SLOPED && row.c.iter().all(|c| (*c + row.c_error) * most <= row.bound * lit(1.0 - 1e-6)) {
+        return None;
+    }
+    // x >= 0, so the error of c is a part of c.
+    let mut row = Row { c: row.c.map(|c| c + row.c_error), ..row };
+    if row.is_curved() {
+        row = row.straight(window, true);
+    }
+    let bound = row.bound - slack;
+    Some(row.forms(segment.length).map(|form: Form<T>| HalfPlane {
+        x0: form.x0,
+        x2: form.x2,
+        most: bound - form.rest - form.k * k,
+    }))
+}
+
+/// The half-planes of the middle coefficient, of u and of the interval at the end, for k.
+fn others<T: RealField + Copy>(h: T, k: T, assumed: &Assumed<T>, next: [T; 2]) -> [HalfPlane<T>; 8] {
+    let (zero, one, half) = (T::zero(), T::one(), lit::<T>(0.5));
+    let ([least, most], u) = (assumed.x, assumed.u);
+    let (g, bend) = (half / h, k / h);
+    let plane = |x0: T, x2: T, most: T| HalfPlane { x0, x2, most };
+    [
+        plane(zero, one, next[1].min(most)),
+        plane(zero, -one, -next[0].max(least)),
+        plane(half, half, most - k),
+        plane(-half, -half, k - least),
+        plane(-g, g, u - bend),
+        plane(g, -g, u + bend),
+        plane(-g, g, u + bend),
+        plane(g, -g, u - bend),
+    ]
+}
+
 /// The half-planes of a segment for one k.
 pub(super) struct HalfPlanes<T, const N: usize> {
-    /// Of each joint: torque, acceleration, both sides, and speed. `None` where a limit is infinite or cannot bind.
+    /// In the order of the rows.
     rows: [[Option<[HalfPlane<T>; 5]>; 5]; N],
-    /// X0 lies between these.
-    x0: [T; 2],
-    /// Of the middle coefficient, of u and of the next interval.
     others: [HalfPlane<T>; 8],
 }
 
@@ -40,69 +85,20 @@ impl<T: RealField + Copy, const N: usize> HalfPlanes<T, N> {
         assumed: &Assumed<T>,
         next: [T; 2],
     ) -> Self {
-        let (zero, one, half) = (T::zero(), T::one(), lit::<T>(0.5));
-        let h = segment.length;
-        let [least, most] = assumed.x;
         let window = Window::new(assumed.x, assumed.touch);
         let mut rows = [[None; 5]; N];
-        for index in 0..Segment::<T, N>::ROWS {
-            let Some(row) = segment.row(index, limits, friction, false) else { continue };
-            let slack = row.bound.abs() * lit(ROUNDING) + row.m_error * assumed.u + row.v_error * most.sqrt() + row.d_error;
-            let place = if index < 4 * N { (index % (2 * N) / 2, index / (2 * N) * 2 + index % 2) } else { (index - 4 * N, 4) };
-            // Speed that the bound does not reach.
-            if index >= 4 * N && row.c.iter().all(|c| (*c + row.c_error) * most <= row.bound * lit(1.0 - 1e-6)) {
-                continue;
-            }
-            // x >= 0, so the error of c is a part of c.
-            let mut row = Row { c: row.c.map(|c| c + row.c_error), ..row };
-            if row.is_curved() {
-                row = row.straight(&window, true);
-            }
-            let bound = row.bound - slack;
-            let planes =
-                row.forms(h).map(|form: Form<T>| HalfPlane { x0: form.x0, x2: form.x2, most: bound - form.rest - form.k * k });
-            if let Some(to) = rows.get_mut(place.0).and_then(|of: &mut [Option<[HalfPlane<T>; 5]>; 5]| of.get_mut(place.1)) {
-                *to = Some(planes);
-            }
+        let places = rows.iter_mut().flatten();
+        for (index, to) in places.enumerate() {
+            *to = of_row(segment, index, limits, friction, k, assumed, &window);
         }
-        let g = half / h;
-        let plane = |x0: T, x2: T, most: T| HalfPlane { x0, x2, most };
-        let others = [
-            plane(zero, one, next[1].min(most)),
-            plane(zero, -one, -next[0].max(least)),
-            plane(half, half, most - k),
-            plane(-half, -half, k - least),
-            plane(-g, g, assumed.u - k / h),
-            plane(g, -g, assumed.u + k / h),
-            plane(-g, g, assumed.u + k / h),
-            plane(g, -g, assumed.u - k / h),
-        ];
-        Self { rows, x0: assumed.x, others }
+        Self { rows, others: others(segment.length, k, assumed, next) }
     }
 
-    /// The interval of X2 for an X0: (lowest, its slope by X0), (highest, its slope), and the X0 that the planes without X2 allow.
+    /// The interval of X2 for an X0.
     fn interval(&self, x0: T) -> Interval<T> {
-        let mut found =
-            Interval { low: (-lit::<T>(1e30), T::zero()), high: (lit(1e30), T::zero()), alone: [T::zero(), lit(1e30)] };
-        let rows = self.rows.iter().flatten().flatten().flatten();
-        for plane in rows.chain(&self.others) {
-            if plane.x2 > T::zero() {
-                let x2 = (plane.most - plane.x0 * x0) / plane.x2;
-                if x2 < found.high.0 {
-                    found.high = (x2, -plane.x0 / plane.x2);
-                }
-            } else if plane.x2 < T::zero() {
-                let x2 = (plane.most - plane.x0 * x0) / plane.x2;
-                if x2 > found.low.0 {
-                    found.low = (x2, -plane.x0 / plane.x2);
-                }
-            } else if plane.x0 > T::zero() {
-                found.alone[1] = found.alone[1].min(plane.most / plane.x0);
-            } else if plane.x0 < T::zero() {
-                found.alone[0] = found.alone[0].max(plane.most / plane.x0);
-            } else if plane.most < T::zero() {
-                found.alone[1] = -T::one();
-            }
+        let mut found = Interval::new();
+        for plane in self.rows.iter().flatten().flatten().flatten().chain(&self.others) {
+            found.cut(plane, x0);
         }
         found
     }
@@ -160,22 +156,68 @@ impl<T: RealField + Copy, const N: usize> HalfPlanes<T, N> {
         Some([top, top])
     }
 
-    /// The X2 that keep all planes from an X0, within rounding; `None` where there is no such X2.
-    pub(super) fn interval_from(&self, x0: T) -> Option<[T; 2]> {
-        let at = self.interval(x0);
-        let slack = lit::<T>(256.0) * T::default_epsilon();
-        let [least, most] = self.x0;
-        let is_inside = x0 >= least.max(at.alone[0]) - most * slack && x0 <= most.min(at.alone[1]) + most * slack;
-        let high = at.high.0.max(T::zero());
-        (is_inside && at.width() >= -slack * at.size()).then(|| [at.low.0.min(high), high])
-    }
-
     /// The largest X2 from an X0.
     pub(super) fn forwards(&self, x0: T) -> T {
         self.interval(x0).high.0
     }
 }
 
+/// The X2 that follow an X0, for one k and one assumption after another. The rows that bounded the last interval come first, so a trial that
+/// leads nowhere ends after a few rows.
+pub(super) struct Trial<'a, T, const N: usize> {
+    segment: &'a Segment<T, N>,
+    limits: &'a Limits<T, N>,
+    friction: &'a [JointFriction<T>; N],
+    x0: T,
+    /// Rows of the lower and the upper end of the last interval.
+    first: [Option<usize>; 2],
+}
+
+impl<'a, T: RealField + Copy, const N: usize> Trial<'a, T, N> {
+    pub(super) fn new(segment: &'a Segment<T, N>, limits: &'a Limits<T, N>, friction: &'a [JointFriction<T>; N], x0: T) -> Self {
+        Self { segment, limits, friction, x0, first: [None; 2] }
+    }
+
+    /// The X2 that keep all rows, within rounding; `None` where there is no such X2, or where an interval around them does not serve.
+    pub(super) fn interval(
+        &mut self,
+        k: T,
+        assumed: &Assumed<T>,
+        next: [T; 2],
+        serves: impl Fn([T; 2]) -> bool,
+    ) -> Option<[T; 2]> {
+        let slack = lit::<T>(256.0) * T::default_epsilon();
+        let ([least, most], x0) = (assumed.x, self.x0);
+        let is_inside = |low: T, high: T| x0 >= least.max(low) - most * slack && x0 <= most.min(high) + most * slack;
+        // Each row leaves less of the interval.
+        let is_left = |found: &Interval<T>| {
+            let [low, high] = found.alone;
+            is_inside(low, high) && found.width() >= -slack * found.size() && serves(found.ends())
+        };
+        let mut found = Interval::new();
+        for plane in others(self.segment.length, k, assumed, next) {
+            found.cut(&plane, x0);
+        }
+        if !is_left(&found) {
+            return None;
+        }
+        let window = Window::new(assumed.x, assumed.touch);
+        for index in self.first.into_iter().flatten().chain(0..Segment::<T, N>::ROWS) {
+            let Some(planes) = of_row(self.segment, index, self.limits, self.friction, k, assumed, &window) else { continue };
+            for plane in &planes {
+                if let Some(first) = found.cut(plane, x0).and_then(|end| self.first.get_mut(end)) {
+                    *first = Some(index);
+                }
+            }
+            if !is_left(&found) {
+                return None;
+            }
+        }
+        Some(found.ends())
+    }
+}
+
+/// The interval of X2 for an X0: (lowest, its slope by X0), (highest, its slope), and the X0 that the planes without X2 allow.
 struct Interval<T> {
     low: (T, T),
     high: (T, T),
@@ -183,11 +225,89 @@ struct Interval<T> {
 }
 
 impl<T: RealField + Copy> Interval<T> {
+    fn new() -> Self {
+        Self { low: (-lit::<T>(1e30), T::zero()), high: (lit(1e30), T::zero()), alone: [T::zero(), lit(1e30)] }
+    }
+
+    /// Takes what a plane leaves; which end of the interval it moves.
+    fn cut(&mut self, plane: &HalfPlane<T>, x0: T) -> Option<usize> {
+        let zero = T::zero();
+        if plane.x2 > zero {
+            let x2 = (plane.most - plane.x0 * x0) / plane.x2;
+            if x2 < self.high.0 {
+                self.high = (x2, -plane.x0 / plane.x2);
+                return Some(1);
+            }
+        } else if plane.x2 < zero {
+            let x2 = (plane.most - plane.x0 * x0) / plane.x2;
+            if x2 > self.low.0 {
+                self.low = (x2, -plane.x0 / plane.x2);
+                return Some(0);
+            }
+        } else if plane.x0 > zero {
+            self.alone[1] = self.alone[1].min(plane.most / plane.x0);
+        } else if plane.x0 < zero {
+            self.alone[0] = self.alone[0].max(plane.most / plane.x0);
+        } else if plane.most < zero {
+            self.alone[1] = -T::one();
+        }
+        None
+    }
+
+    /// The ends, at least 0; the upper one counts within rounding.
+    fn ends(&self) -> [T; 2] {
+        let high = self.high.0.max(T::zero());
+        [self.low.0.min(high), high]
+    }
+
     fn width(&self) -> T {
         self.high.0 - self.low.0
     }
 
     fn size(&self) -> T {
         self.high.0.abs().max(self.low.0.abs())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::timing::segment::Column;
+
+    /// In whatever order the rows come, a trial leaves the interval of all half-planes, and ends early only where that does not serve.
+    #[test]
+    fn a_trial_leaves_what_all_half_planes_leave() {
+        let mut state = 5u64;
+        let mut random = move || {
+            state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+            (state >> 11) as f64 / (1u64 << 53) as f64
+        };
+        let curved = JointFriction { cubic: 0.3, stribeck: 0.5, stribeck_velocity: 0.2, ..JointFriction::default() };
+        let friction = [JointFriction { viscous: 0.4, coulomb: 0.1, ..JointFriction::default() }, curved];
+        let limits = Limits::velocity([1.2, 1.5]).and_then(|of| of.with_effort([-3.0; 2], [3.0; 2])).expect("limits");
+        let (mut some, mut none, mut early) = (0, 0, 0);
+        for _ in 0..500 {
+            let mut segment = Segment::<f64, 2> { length: 0.1, signs: [1.0, -1.0], ..Segment::empty() };
+            for (part, of) in segment.torques.iter_mut().chain(&mut segment.rates).enumerate() {
+                let least = if part == 5 { 0.0 } else { -1.0 };
+                *of = [0, 1]
+                    .map(|_| Column { quadratic: [0; 3].map(|_| least + (1.0 - least) * random()), error: 1e-3 * random() });
+            }
+            let (x0, target, next) = (random(), random(), [0.0, 0.3 + random()]);
+            let mut trial = Trial::new(&segment, &limits, &friction, x0);
+            for k in [0.0, 0.1, -0.1] {
+                let assumed = Assumed { x: [0.0, 0.2 + 1.3 * random()], touch: 0.1 + random(), u: 4.0 };
+                let at = HalfPlanes::new(&segment, &limits, &friction, k, &assumed, next).interval(x0);
+                let inside = x0 <= assumed.x[1].min(at.alone[1]) && x0 >= at.alone[0];
+                let expected = (inside && at.width() >= 0.0).then(|| at.ends());
+                let found = trial.interval(k, &assumed, next, |_| true);
+                assert_eq!(found, expected, "{segment:?} {assumed:?} {x0} {k}");
+                let near = |[low, high]: [f64; 2]| (target.max(low).min(high) - target).abs() < 0.1;
+                assert_eq!(trial.interval(k, &assumed, next, near), expected.filter(|ends| near(*ends)));
+                (some, none) = (some + usize::from(found.is_some()), none + usize::from(found.is_none()));
+                early += usize::from(expected.is_some_and(|ends| !near(ends)));
+            }
+        }
+        assert!(some > 100 && none > 100 && early > 50, "{some} {none} {early}");
     }
 }

@@ -223,4 +223,41 @@ mod tests {
         assert!(at_most_zero(&polynomial(&[-2.0 - 1e-6]), Some((&polynomial(&[0.0, 1.0]), &x)), None, &square(1.0, 4.0)).is_ok());
         assert!(at_most_zero(&polynomial(&[-1.9]), Some((&polynomial(&[0.0, 1.0]), &x)), None, &square(1.0, 4.0)).is_err());
     }
+
+    /// With dq = 1 + t/4 the curve is a polynomial in t: less itself it is 0 everywhere. A line that is a chord where it should be a tangent
+    /// lies below the curve.
+    #[test]
+    fn curves_are_judged_on_all_of_an_interval() {
+        let rate = polynomial(&[1.0, 0.25]);
+        let y = rate.times(&rate);
+        let (y_of, number) = (|t: f64| (1.0 + 0.25 * t).powi(2), |x: f64| Taylor::constant(Range::of(x)));
+        for (cubic, stribeck) in [(2.0, 0.0), (-2.0, 0.0), (0.0, 3.0), (0.0, -3.0), (-1.0, 2.0), (1.0, -2.0)] {
+            let of = Curve { cubic: Range::of(cubic), stribeck: Range::of(stribeck), velocity: Range::of(1.0) };
+            let judged = |f: Taylor| at_most_zero(&f, None, Some(&(of, y.clone())), &NONE);
+            let mut exponential = Taylor::constant(Range::ZERO);
+            (0..9i32).fold((-1.0f64).exp(), |term, k| {
+                exponential.terms[k as usize] = Range::of(term);
+                term * -0.25 / f64::from(k + 1)
+            });
+            let itself = rate.times(&y).times(&number(cubic)).plus(&exponential.times(&number(stribeck)));
+            assert!(judged(number(-1e-6).minus(&itself)).is_ok(), "{of:?}");
+            assert!(judged(number(1e-6).minus(&itself)).is_err(), "{of:?}");
+            let value = |t: f64| cubic * y_of(t).powf(1.5) + stribeck * (-y_of(t).sqrt()).exp();
+            assert!(judged(number(-1e-3 - value(-1.0).min(value(1.0)))).is_err(), "{of:?}");
+            let line = |from: f64, slope: f64| number(value(from) - slope * y_of(from)).plus(&y.times(&number(slope)));
+            let chord = line(-1.0, (value(1.0) - value(-1.0)) / (y_of(1.0) - y_of(-1.0)));
+            let tangent = line(0.0, 1.5 * cubic - 0.5 * stribeck * (-1.0f64).exp());
+            if cubic * stribeck == 0.0 {
+                let (above, below) = if cubic + stribeck > 0.0 { (chord, tangent) } else { (tangent, chord) };
+                assert!(judged(number(-1e-9).minus(&above)).is_ok(), "{of:?}");
+                assert!(judged(number(-1e-3).minus(&below)).is_err(), "{of:?}");
+            }
+        }
+        // What the model of y misses lies on one side: y from 1 to 1.2.
+        let missing = Taylor { rest: Range { low: 0.0, high: 0.2 }, ..number(1.0) };
+        for (cubic, f, holds) in [(1.0, -1.32, true), (1.0, -1.31, false), (-1.0, 0.99, true), (-1.0, 1.001, false)] {
+            let of = Curve { cubic: Range::of(cubic), stribeck: Range::ZERO, velocity: Range::of(1.0) };
+            assert_eq!(at_most_zero(&number(f), None, Some(&(of, missing.clone())), &NONE).is_ok(), holds, "{cubic} {f}");
+        }
+    }
 }

@@ -123,6 +123,23 @@ mod tests {
         }
     }
 
+    /// Over x the curve is at most what it is over y for every rate of a range, and the same for a rate that is known.
+    #[test]
+    fn a_curve_over_x_is_below() {
+        for [cubic, stribeck] in [[2.0, 0.0], [-2.0, 0.0], [0.0, 3.0], [0.0, -3.0], [-1.0, 2.0], [1.0, -2.0]] {
+            let curve = Curve { cubic: Range::of(cubic), stribeck: Range::of(stribeck), velocity: Range::of(0.1) };
+            for [low, high] in [[0.5, 0.5], [-0.5, -0.5], [0.2, 0.5], [-0.5, -0.2], [-0.1, 0.3], [-0.3, 0.1], [0.0, 0.4]] {
+                let (over, rest) = curve.over_square(Range { low, high });
+                for i in 0..=100 {
+                    let (rate, x) = (low + (high - low) * f64::from(i % 10) / 9.0, 0.05 + 0.3 * f64::from(i / 10));
+                    let speed = rate.abs() * x.sqrt();
+                    let off = cubic * speed.powi(3) + stribeck * (-speed / 0.1).exp() - over.value(x).plus(rest).low;
+                    assert!(off > -1e-14 && (low < high || off < 1e-10), "{curve:?} {low} {high} at {rate} {x}: {off:e}");
+                }
+            }
+        }
+    }
+
     #[test]
     fn lines_are_above_the_curve() {
         for [cubic, stribeck] in [[2.0, 0.0], [-2.0, 0.0], [0.0, 3.0], [0.0, -3.0], [-1.0, 2.0], [1.0, -2.0]] {

@@ -219,10 +219,10 @@ impl Faults<'_> {
                 format!("the finest joint spline still leaves the path by {}", away(off)),
                 "raise `tolerance`, or lead the path farther from a singular posture",
             ),
-            FaultKind::Redundant { rows } => (
+            FaultKind::TooManyRows { rows } => (
                 Shared::WrongLength.into(),
                 format!("the task of the description has {rows} rows, the arm has {} joints", self.manipulator.dof()),
-                "the tip determines the joints only where both are the same: give the path by joints, `points`",
+                "name the rows that the joints lead in `task` of the description, or give the path by joints, `points`",
             ),
         };
         self.at((fault.s, fault.piece, curve), code, reason, help)

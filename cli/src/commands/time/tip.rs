@@ -1,7 +1,8 @@
 //! Paths of the end effector: a joint spline near a curve of poses, on the branch of given joint values.
 //!
 //! A pose is a position and the rotation vector from the orientation at `start`, both in the base frame. With p' the derivative of the
-//! pose along the path, joint values and q' = J^-1 p' at nodes make a cubic Hermite spline; nodes are doubled until it is near the curve.
+//! pose along the path, joint values and q' = J^+ p' at nodes make a cubic Hermite spline; nodes are doubled until it is near the curve.
+//! With more joints than rows J^+ gives the least |q'|, so the joints move the least (Siciliano et al., Sect. 3.5.1).
 
 use std::cell::RefCell;
 
@@ -49,8 +50,8 @@ pub(super) enum FaultKind {
     Singular { least: f64, needed: f64 },
     /// The spline stays this far away.
     Tolerance { off: Distance },
-    /// The task has so many rows, which is not the number of joints.
-    Redundant { rows: usize },
+    /// The task has so many rows, more than joints.
+    TooManyRows { rows: usize },
 }
 
 /// The kinematics of an arm.
@@ -124,7 +125,8 @@ impl Kinematics {
         let mut q = near.clone();
         for _ in 0..30 {
             let e = self.of_rows(&self.error(&q, wanted));
-            let mut step = self.jacobian(&q).lu().solve(&e)?;
+            let j = self.jacobian(&q);
+            let mut step = if j.is_square() { j.lu().solve(&e)? } else { least(&j, &e)? };
             if !step.iter().all(|x| x.is_finite()) {
                 return None;
             }
@@ -153,6 +155,11 @@ impl Kinematics {
         }
         svd.solve(&self.of_rows(&wanted.rates), 0.0).map_err(|_| (least, needed))
     }
+}
+
+/// The least x with J x = e, J of full row rank: x = J' (J J')^-1 e.
+fn least(j: &DMatrix<f64>, e: &DVector<f64>) -> Option<DVector<f64>> {
+    Some(j.tr_mul(&(j * j.transpose()).cholesky()?.solve(e)))
 }
 
 /// The place s of a piece of the curve; `base` is the orientation that rotation vectors count from.
@@ -190,10 +197,24 @@ impl Way<'_> {
         slope.map_err(|(least, needed)| self.fault(s, FaultKind::Singular { least, needed }))
     }
 
+    /// How far the joints get from q at `from` in a step h. Where J is square the pose corrects it; the null space keeps every error.
+    /// So it is the method of Runge and Kutta there, whose error changes q'' by h³ only.
+    fn step(&self, from: f64, q: &DVector<f64>, h: f64) -> Result<DVector<f64>, Fault> {
+        let first = self.slope(from, q)?;
+        if self.arm.rows.len() == self.arm.dof {
+            return Ok(first * h);
+        }
+        let middle = from + 0.5 * h;
+        let second = self.slope(middle, &(q + &first * (0.5 * h)))?;
+        let third = self.slope(middle, &(q + &second * (0.5 * h)))?;
+        let last = self.slope(from + h, &(q + &third * h))?;
+        Ok((first + (second + third) * 2.0 + last) * (h / 6.0))
+    }
+
     /// Joint values at `to` on the branch of q at `from`: steps that lose the branch are halved.
     fn follow(&self, from: f64, q: &DVector<f64>, to: f64, depth: u32) -> Result<DVector<f64>, Fault> {
         let there = wanted(self.curve, to, &self.base);
-        let guess = q + self.slope(from, q)? * (to - from);
+        let guess = q + self.step(from, q, to - from)?;
         let near = |found: &DVector<f64>| (found - &guess).amax() < JUMP;
         if let Some(found) = self.arm.solve(&guess, &there).filter(near) {
             return Ok(found);
@@ -270,8 +291,8 @@ pub(super) fn spline<const N: usize>(
 ) -> Result<(Pieces<N>, Distance), Fault> {
     let arm = Kinematics::new(manipulator);
     let begin = curve.first().map_or(0.0, |(piece, _)| piece.start);
-    if arm.rows.len() != arm.dof {
-        return Err(Fault { s: begin, piece: 0, kind: FaultKind::Redundant { rows: arm.rows.len() } });
+    if arm.rows.len() > arm.dof {
+        return Err(Fault { s: begin, piece: 0, kind: FaultKind::TooManyRows { rows: arm.rows.len() } });
     }
     let near = DVector::from_row_slice(&tip.start);
     let (_, base) = arm.pose(&near);

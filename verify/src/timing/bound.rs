@@ -1,0 +1,295 @@
+//! The time that no motion beats: which barriers have a bound at their end, and the sum of their durations.
+
+use super::curve::Curve;
+use super::file::{Barrier, Kind, KINDS};
+use super::law::Law;
+use super::rows::{Checker, Functions, Row};
+use super::taylor::{Range, Taylor};
+
+/// Pairs of rows that exclude larger and larger x, at most.
+const LONGEST_CHAIN: usize = 64;
+
+/// A sum of two rows without u, from below: c x + v sqrt(x) + d, and curves over x.
+#[derive(Clone, Debug)]
+struct Sum {
+    terms: [Range; 3],
+    curves: Vec<Curve>,
+    /// Another one that has to be above 0, too.
+    other: Option<Box<Sum>>,
+}
+
+impl Sum {
+    fn value(&self, x: f64) -> f64 {
+        let [c, v, d] = self.terms;
+        let sum = c.times(Range::of(x)).plus(v.times(Range::of(x).root().unwrap_or(Range::ALL))).plus(d);
+        self.curves.iter().fold(sum, |sum, curve| sum.plus(curve.value(x))).low
+    }
+
+    /// An x up to which the sum is above 0 behind `from`, as [`Sum::straight`] finds it, with curves replaced by lines below.
+    fn reach(&self, from: f64, top: f64) -> Option<f64> {
+        let top = match &self.other {
+            Some(other) => top.min(other.reach(from, top)?),
+            None => top,
+        };
+        if self.curves.is_empty() {
+            return self.straight(from, top).map(|end| if self.other.is_some() { end.min(top) } else { end });
+        }
+        // Longer parts have lines farther off.
+        let ends = [3.0, 0.5, 0.1, 0.02, 4e-3, 8e-4, 1e-4].into_iter().filter_map(|width| {
+            let to = (from * (1.0 + width)).min(top);
+            let mut of = Sum { curves: Vec::new(), other: None, ..self.clone() };
+            for curve in &self.curves {
+                let [slope, height] = curve.negated().line(from, to, from).filter(|_| from < to)?;
+                let [c, _, d] = &mut of.terms;
+                (*c, *d) = (c.minus(slope), d.minus(height));
+            }
+            of.straight(from, to).map(|end| end.min(to))
+        });
+        ends.reduce(f64::max)
+    }
+
+    /// An x up to which the sum is above 0 behind `from`, infinity where it is so for good; `None` where that is not known.
+    fn straight(&self, from: f64, top: f64) -> Option<f64> {
+        let [c, v, d] = self.terms.map(|x| x.low);
+        if !(self.value(from) >= 0.0 && [c, v, d].iter().all(|x| x.is_finite())) {
+            return None;
+        }
+        // In z = sqrt(x), with a place for the rounding of all that follows.
+        let z = from.sqrt();
+        let rises = |z: f64| c > 0.0 && 2.0 * c * z >= -v * (1.0 + 1e-12);
+        if c >= 0.0 && v >= 0.0 {
+            return (c + v > 0.0 || self.value(from) > 0.0).then_some(f64::INFINITY);
+        }
+        if rises(z) {
+            return Some(f64::INFINITY);
+        }
+        if c > 0.0 {
+            // It falls until z = -v/2c, and rises behind.
+            let [c, v, d] = self.terms;
+            let least = v.times(v).over(c.times(Range::of(4.0))).map_or(f64::NEG_INFINITY, |by| d.minus(by).low);
+            if least > 0.0 {
+                return Some(f64::INFINITY);
+            }
+        }
+        // Concave, or falling to where it vanishes: above 0 between two places where it is.
+        let root = (v * v - 4.0 * c * d).max(0.0).sqrt();
+        let zero = match (v >= 0.0, c) {
+            (true, _) => (v + root) / (-2.0 * c),
+            (false, 0.0) => -d / v,
+            (false, _) => 2.0 * d / (root - v),
+        };
+        let end = [1e-12, 1e-9, 1e-6].into_iter().map(|by| (zero * zero * (1.0 - by)).min(top));
+        end.into_iter().find(|&end| end > from && self.value(end) > 0.0)
+    }
+}
+
+/// Proved bounds of x at the nodes.
+struct Nodes(Vec<f64>);
+
+impl Checker {
+    /// Pairs of rows at the end (`t` = 1) or the start (-1) of a segment: where their sum is above 0, no u keeps both. And the x that no speed
+    /// exceeds there.
+    fn pairs(&self, of: &Functions, t: f64) -> (Vec<Sum>, f64) {
+        let at = |function: &Taylor| function.at(t);
+        let (mut top, mut rows, mut flat) = (f64::INFINITY, Vec::new(), Vec::new());
+        for joint in 0..self.file.joints.len() {
+            for (kind, _) in KINDS {
+                let Some(Row { m, c, v, d, curve }) = self.row(of, joint, kind) else { continue };
+                let (m, c, v, mut d) = (at(&m), at(&c), at(&v), at(&d));
+                let curve = curve.map(|curve| {
+                    let (curve, rest) = curve.over_square(at(&of.rate[joint]));
+                    d = d.plus(rest);
+                    curve
+                });
+                if kind == Kind::Speed && c.low > 0.0 {
+                    top = top.min(d.negated().over(c).map_or(f64::INFINITY, |x| x.high));
+                } else if m.low > 0.0 || m.high < 0.0 {
+                    // c x + v sqrt(x) + d <= -m u, by |m|.
+                    let size = if m.low > 0.0 { m } else { m.negated() };
+                    let by = |x: Range| x.over(size).unwrap_or(Range::ALL);
+                    let curve = curve.map(|curve| curve.times(by(Range::of(1.0))));
+                    rows.push((m.low > 0.0, [by(c), by(v), by(d)], curve));
+                } else {
+                    flat.push((m.size(), [c, v, d], curve));
+                }
+            }
+        }
+        let lower = |sign: bool| rows.iter().filter(move |row| row.0 == sign).map(|row| (&row.1, row.2));
+        let mut sums = Vec::new();
+        for (a, of_a) in lower(true) {
+            for (b, of_b) in lower(false) {
+                let terms = [0, 1, 2].map(|k| Range::of(a[k].plus(b[k]).low));
+                sums.push(Sum { terms, curves: of_a.into_iter().chain(of_b).collect(), other: None });
+                // A joint that turns round: |m| is at most `size`, and u lies between the two rows.
+                for (size, row, curve) in &flat {
+                    let size = Range::of(*size);
+                    let by = |other: &[Range; 3], k: usize| row[k].plus(other[k].times(size)).low;
+                    let sum = |terms: [f64; 3], of: Option<Curve>, other: Option<Box<Sum>>| {
+                        let curves = curve.iter().copied().chain(of.map(|of| of.times(size))).collect();
+                        Sum { terms: terms.map(Range::of), curves, other }
+                    };
+                    sums.push(if of_a.is_none() && of_b.is_none() {
+                        sum([0, 1, 2].map(|k| by(a, k).min(by(b, k))), None, None)
+                    } else {
+                        let other = Box::new(sum([0, 1, 2].map(|k| by(b, k)), of_b, None));
+                        sum([0, 1, 2].map(|k| by(a, k)), of_a, Some(other))
+                    });
+                }
+            }
+        }
+        (sums, top)
+    }
+
+    /// Whether the rows on both sides of node `i` exclude every x above `most`: from there on, one pair of rows after the other.
+    fn excludes(&self, functions: &[Functions], i: usize, most: f64) -> bool {
+        let sides = [(i.checked_sub(1).and_then(|i| functions.get(i)), 1.0), (functions.get(i), -1.0)];
+        let (mut pairs, mut top) = (Vec::new(), f64::INFINITY);
+        for (of, t) in sides.into_iter().filter_map(|(of, t)| Some((of?, t))) {
+            let (own, highest) = self.pairs(of, t);
+            pairs.extend(own);
+            top = top.min(highest);
+        }
+        let mut x = most;
+        for _ in 0..LONGEST_CHAIN {
+            if x >= top {
+                return true;
+            }
+            let next = pairs.iter().filter_map(|pair| pair.reach(x, top)).fold(x, f64::max);
+            if next <= x {
+                return false;
+            }
+            x = next;
+        }
+        x >= top
+    }
+
+    /// The bound of the file.
+    pub(super) fn bound(&self, functions: &[Functions]) -> Result<Range, String> {
+        let file = &self.file;
+        let count = file.laws.len();
+        let mut nodes = Nodes(vec![f64::INFINITY; count + 1]);
+        nodes.0[0] = Range::of(file.speed[0]).times(Range::of(file.speed[0])).high;
+        nodes.0[count] = Range::of(file.speed[1]).times(Range::of(file.speed[1])).high;
+        let mut open: Vec<(usize, usize)> = Vec::new();
+        for (i, of) in file.barriers.iter().enumerate() {
+            open.extend((0..of.len()).map(|which| (i, which)));
+        }
+        // Each barrier bounds x at its ends, which another may need.
+        loop {
+            let before = open.len();
+            for backwards in [false, true] {
+                if backwards {
+                    open.reverse();
+                }
+                open.retain(|(i, which)| {
+                    let Barrier { law: Law { x: [x0, x2], .. }, direction, .. } = file.barriers[*i][*which];
+                    let holds = match direction {
+                        1 => nodes.holds(self, functions, *i, x0),
+                        -1 => nodes.holds(self, functions, i + 1, x2),
+                        _ => true,
+                    };
+                    if holds {
+                        nodes.0[*i] = nodes.0[*i].min(x0);
+                        nodes.0[i + 1] = nodes.0[i + 1].min(x2);
+                    }
+                    !holds
+                });
+            }
+            open.sort_unstable();
+            if open.is_empty() || open.len() == before {
+                break;
+            }
+        }
+        let mut sum = Range::ZERO;
+        for (i, of) in file.barriers.iter().enumerate() {
+            let proved = of.iter().enumerate().filter(|(which, _)| open.binary_search(&(i, *which)).is_err());
+            let times = proved.filter_map(|(_, barrier)| barrier.law.duration(functions[i].h));
+            sum = sum.plus(times.max_by(|a, b| a.low.total_cmp(&b.low)).unwrap_or(Range::ZERO));
+        }
+        if sum.low * (1.0 + 1e-9) < file.lower_bound {
+            let at = open.first().map_or(String::new(), |(i, _)| {
+                format!("; the barrier at s = {} needs a bound at its end that nothing proves", file.s[*i])
+            });
+            return Err(format!("not proved: no motion takes less than {} s; proved are {} s{at}", file.lower_bound, sum.low));
+        }
+        Ok(sum)
+    }
+}
+
+impl Nodes {
+    /// Whether x is at most `most` at node `i`.
+    fn holds(&mut self, checker: &Checker, functions: &[Functions], i: usize, most: f64) -> bool {
+        if self.0[i] <= most {
+            return true;
+        }
+        let holds = checker.excludes(functions, i, most);
+        if holds {
+            self.0[i] = most;
+        }
+        holds
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// From a place on, a sum is above 0 up to its reach, and not above 0 right behind that.
+    #[test]
+    fn a_sum_reaches_to_its_next_zero() {
+        let mut state = 1u64;
+        let mut random = |most: f64| {
+            state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+            ((state >> 40) % 17) as f64 / 16.0 * most
+        };
+        let (top, mut ends, mut forever) = (50.0, 0, 0);
+        for _ in 0..5000 {
+            let [c, v, d] = [0, 1, 2].map(|_| random(8.0) - 4.0);
+            let terms = [c, v, d].map(Range::of);
+            let (sum, from) = (Sum { terms, curves: Vec::new(), other: None }, random(4.0));
+            let value = |x: f64| c * x + v * x.sqrt() + d;
+            let Some(end) = sum.reach(from, top) else {
+                assert!(value(from) < 1e-3, "{c} {v} {d} from {from}");
+                continue;
+            };
+            assert!(
+                (1..200).all(|k| value(from + (end.min(top) - from) * f64::from(k) / 200.0) > 0.0),
+                "{c} {v} {d} from {from}: {end}"
+            );
+            if end < top {
+                // It touches 0 where two zeros meet.
+                assert!(value(end * (1.0 + 1e-5)) < 1e-6, "{c} {v} {d} from {from}: {end}");
+                ends += 1;
+            } else {
+                forever += 1;
+            }
+        }
+        assert!(ends > 500 && forever > 500, "{ends} {forever}");
+    }
+
+    /// With curves a sum is above 0 on all of its reach, and reaches on wherever it has something to spare.
+    #[test]
+    fn a_sum_with_curves_is_above_zero_on_its_reach() {
+        let mut state = 1u64;
+        let mut random = |most: f64| {
+            state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+            ((state >> 40) % 17) as f64 / 16.0 * most
+        };
+        let (top, mut ends) = (50.0, 0);
+        for _ in 0..3000 {
+            let [c, v, d, cubic, stribeck] = [0, 1, 2, 3, 4].map(|_| random(8.0) - 4.0);
+            let (velocity, from) = (0.05 + random(1.0), 0.01 + random(4.0));
+            let curves = vec![Curve { cubic: Range::of(cubic), stribeck: Range::of(stribeck), velocity: Range::of(velocity) }];
+            let sum = Sum { terms: [c, v, d].map(Range::of), curves, other: None };
+            let value = |x: f64| c * x + v * x.sqrt() + d + cubic * x.powf(1.5) + stribeck * (-x.sqrt() / velocity).exp();
+            let Some(end) = sum.reach(from, top) else {
+                assert!(value(from) < 0.1, "{sum:?} from {from}");
+                continue;
+            };
+            let places = (1..=200).map(|k| from + (end.min(top) - from) * f64::from(k) / 200.0);
+            places.for_each(|x| assert!(value(x) > -1e-12, "{sum:?} from {from} to {end}: at {x}"));
+            ends += usize::from(end < top);
+        }
+        assert!(ends > 500, "{ends}");
+    }
+}
