@@ -164,6 +164,10 @@ fn validate(
     };
     frames::lay(&mut joints, &ends, convention == Some(Convention::Urdf), &symbols);
     let places = places::gather(description, context.evaluator.parameters.places_of_symbols());
+    let coupling = coupling.map(|mut coupling| {
+        coupling.find_sums(&joints);
+        coupling
+    });
     let mut manipulator = Manipulator {
         name: description.name.as_ref()?.value.clone(),
         parameters: symbols,
