@@ -215,6 +215,35 @@ fn many_joints_may_each_add_another_one() {
     assert!(report.passed(), "{}", report.first_fault().unwrap_or_default());
 }
 
+/// A pin that closes is proved and changes no function; with a sign of a factor wrong the loop is open.
+#[test]
+fn closed_loops_are_proved() {
+    const PIN: &str =
+        "closes:\n  - {name: pin of the rod, joint: rod, at: [0.5, 0, 0], with: forearm, there: [-0.2, 0, 0]}\ntips:";
+    let codes = |text: &str| -> Vec<String> {
+        let (_, diagnostics) = validate::read(&Source::new("robot.yaml", text));
+        diagnostics.iter().filter(|d| d.code.severity() == Severity::Error).map(|d| d.code.name().to_owned()).collect()
+    };
+    let closed = PARALLELOGRAM.replacen("tips:", PIN, 1);
+    assert_eq!(codes(&closed), [""; 0]);
+    let kinematics = Selection::named(["inertia_matrix"]).expect("a function");
+    let body = |text: &str| chosen(text, kinematics.clone()).1.module.lines().skip(1).map(String::from).collect::<Vec<_>>();
+    assert_eq!(body(&closed), body(PARALLELOGRAM));
+    for (of, by) in [
+        ("follows: {crank: 1, lower: -1}", "follows: {crank: 1, lower: 1}"),
+        ("follows: {lower: 1, crank: -1}", "follows: {lower: 1}"),
+        ("at: [0.5, 0, 0]", "at: [0.5, 0, 1e-30]"),
+    ] {
+        let open = closed.replacen(of, by, 1);
+        assert_ne!(open, closed);
+        assert_eq!(codes(&open), ["open-loop"], "{by}");
+    }
+    assert_eq!(codes(&closed.replacen("with: forearm", "with: forarm", 1)), ["unknown-tip-joint"]);
+    // A pin where one link carries the other closes whatever the factor; a link that turns leaves the base.
+    let pins = "closes:\n  - {joint: middle, with: inner, there: [0.045, 0, 0]}\n  - {joint: inner, with: base}\ntool:";
+    assert_eq!(codes(&FINGER.replacen("tool:", pins, 1)), ["open-loop"]);
+}
+
 /// Factors with another digit, without a sign or with another constant: the argument of the sine is another one.
 #[test]
 fn a_module_of_another_computed_angle_is_refused() {
