@@ -145,12 +145,48 @@ impl AngleSum {
     }
 }
 
+/// The angle of a sine or cosine.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub enum Angle {
+    /// A joint variable, or an angle that a function computes.
+    One(u16),
+    /// A sum of joint variables.
+    Sum(AngleSum),
+}
+
+impl Angle {
+    /// The joints or computed angles, and whether they are taken away.
+    pub fn terms(self) -> impl Iterator<Item = (u16, bool)> {
+        let (one, sum) = match self {
+            Angle::One(i) => (Some((i, false)), None),
+            Angle::Sum(sum) => (None, Some(sum)),
+        };
+        one.into_iter().chain(sum.into_iter().flat_map(AngleSum::terms))
+    }
+
+    /// How many additions form the sum.
+    pub fn additions(self) -> usize {
+        match self {
+            Angle::One(_) => 0,
+            Angle::Sum(sum) => sum.additions(),
+        }
+    }
+
+    /// Its sine and its cosine.
+    pub fn circle(self) -> [Symbol; 2] {
+        match self {
+            Angle::One(i) => [Symbol::Sine(i), Symbol::Cosine(i)],
+            Angle::Sum(sum) => [Symbol::SineOf(sum), Symbol::CosineOf(sum)],
+        }
+    }
+}
+
 impl Symbol {
     /// The angle that this is the sine or cosine of.
-    pub fn angle(self) -> Option<AngleSum> {
+    pub fn angle(self) -> Option<Angle> {
         match self {
-            Symbol::Sine(i) | Symbol::Cosine(i) => Some(AngleSum::of(i)),
-            Symbol::SineOf(sum) | Symbol::CosineOf(sum) => Some(sum),
+            Symbol::Sine(i) | Symbol::Cosine(i) => Some(Angle::One(i)),
+            Symbol::SineOf(sum) | Symbol::CosineOf(sum) => Some(Angle::Sum(sum)),
             _ => None,
         }
     }

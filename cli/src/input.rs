@@ -123,7 +123,8 @@ pub(crate) fn without_coupling(source: &Source, manipulator: &Manipulator, comma
     }
     let Some(joint) = manipulator.coupled_joint() else { return Ok(()) };
     terminal::error(&format!(
-        "{name}: joint `{}` is coupled with others, and `armgen {command}` does not take coupled joints",
+        "{name}: joint `{}` is coupled with others, and `armgen {command}` does not take coupled joints; without `follows` and `adds`, \
+         in a copy of the file, each joint moves freely",
         joint.name
     ));
     Err(FAULTY)

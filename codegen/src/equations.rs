@@ -4,8 +4,11 @@
 //!   mass): second derivatives of tau.
 //! - No joint moves any row of the task that the file writes: rows of the Jacobian that are identically zero.
 //! - The inertia matrix B(q) is singular for every q (for instance a massless last link without inertia): pivots of an elimination.
+//! - Two links do not share a point that `closes` names, in every posture (`closures`).
 //!
 //! Each is decided exactly, in the prime field of the expressions' fingerprints.
+
+mod closures;
 
 use std::ops::Range;
 
@@ -26,8 +29,8 @@ use crate::ring::{ExprId, Pool, Symbol};
 use crate::source::{Source, Span};
 use armgen_description::validate::structure;
 pub use armgen_description::validate::{
-    density_of_cuboid, doubt_of_density, impossible_inertia, is_free_name, is_rust_name, module_name, warning, JointPlaces,
-    NominalValues, Occurrence, Places, Role, MAX_PARAMETERS,
+    density_of_cuboid, doubt_of_density, impossible_inertia, is_free_name, is_rust_name, module_name, warning, Closure,
+    JointPlaces, NominalValues, Occurrence, Places, Role, MAX_PARAMETERS,
 };
 
 /// The arm that `source` describes, with the places of its parts, and all diagnostics, in the order of the text. There is an arm
@@ -71,6 +74,7 @@ fn check(manipulator: &Manipulator, places: &Places, diagnostics: &mut Diagnosti
             found.push(Some(immovable_task(&of_tip, place)));
         }
     }
+    found.extend(closures::open_loops(manipulator, &field, &places.closures).into_iter().map(Some));
     if manipulator.is_massless() {
         found.push(Some(no_dynamics(places)));
         found.into_iter().flatten().for_each(|diagnostic| diagnostics.push(diagnostic));

@@ -72,6 +72,8 @@ pub struct RobotDescription {
     pub inverse_kinematics: PosturesDescription,
     /// Named end effectors, instead of the keys for a single one. The span is the key's.
     pub tips: Option<Spanned<Vec<TipDescription>>>,
+    /// Points that two links share in every posture.
+    pub closes: Vec<ClosureDescription>,
     /// Kinds of warnings that the file accepts.
     pub allow: Vec<Spanned<String>>,
 }
@@ -362,6 +364,23 @@ pub struct TipDescription {
     pub task: Option<Spanned<Vec<Spanned<TaskRow>>>>,
     /// The choices for its inverse kinematics.
     pub inverse_kinematics: PosturesDescription,
+}
+
+/// A point that two links share in every posture: the pin at which a loop of links closes.
+#[derive(Clone, Debug)]
+pub struct ClosureDescription {
+    /// Its name.
+    pub name: Option<Spanned<String>>,
+    /// The joint of a link, or `base`.
+    pub joint: Option<Spanned<String>>,
+    /// The point in the frame of that link.
+    pub at: Option<Spanned<[Value; 3]>>,
+    /// The joint of the other link, or `base`.
+    pub with: Option<Spanned<String>>,
+    /// The point in the frame of that link.
+    pub there: Option<Spanned<[Value; 3]>>,
+    /// Where it begins: its first key.
+    pub span: Span,
 }
 
 /// The choices for inverse kinematics.

@@ -202,7 +202,7 @@ codes! {
         LateParent Error "late-parent",
         /// `mount` beside no `parent`.
         MountWithoutParent Error "mount-without-parent",
-        /// `tip`, or `joint` of an end effector, names no joint.
+        /// `tip`, `joint` of an end effector, or `joint` or `with` of `closes` names no joint.
         UnknownTipJoint Error "unknown-tip-joint",
         /// Two end effectors of one name.
         DuplicateTip Error "duplicate-tip",
@@ -276,6 +276,8 @@ codes! {
         ImmovableTask Error "immovable-task",
         /// The inertia matrix is singular for every q.
         SingularInertia Error "singular-inertia",
+        /// Two links do not share the point of `closes` in every posture.
+        OpenLoop Error "open-loop",
 
         /// `allow` names what is no kind of warning.
         UnknownWarning Error "unknown-warning",

@@ -18,6 +18,8 @@
 use crate::exact::{Number, Polynomial};
 use crate::kinds::{Feature, JointKind, ParameterId, TaskRow};
 use armgen_algebra::ring::field::computed::ComputedAngle;
+use armgen_algebra::ring::AngleSum;
+use std::collections::BTreeMap;
 
 /// Index into [`Manipulator::joints`]; link i is the one that joint i moves.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
@@ -133,7 +135,27 @@ pub struct Coupling {
     pub limits: Vec<Limits>,
     /// The variable of each joint.
     pub variables: Vec<JointVariable>,
+    /// Sums of the variables of joints about parallel axes, each joint carried by the next one's link or the other way round, of which the angle
+    /// of a joint is a computed one. Functions may take the sine of such a sum.
+    pub sums: Vec<JointSum>,
 }
+
+/// A sum of the variables of joints that turn.
+#[derive(Clone, Debug)]
+pub struct JointSum {
+    /// The joints; not turned.
+    pub joints: AngleSum,
+    /// The sum over coordinates.
+    pub variable: JointVariable,
+}
+
+/// Most sums of [`Coupling::sums`].
+const MOST_SUMS: usize = 64;
+/// Most terms of the sine of the constant part of such a sum, which double with each constant of general size.
+const MOST_TERMS: usize = 8;
+/// Most turns of leaders, their factors without signs, of which sines and cosines are taken apart: they are polynomials of this degree. Of more, and
+/// of factors that are no whole numbers, they are those of a computed angle.
+const MOST_TURNS: i64 = 16;
 
 /// The variable of a joint as a sum over coordinates.
 #[derive(Clone, Debug)]
@@ -150,6 +172,23 @@ pub struct JointVariable {
 }
 
 impl JointVariable {
+    /// Of a joint that turns, or of a sum of such joints; `turns`: whether a coordinate does.
+    pub(crate) fn of_angle(
+        factors: BTreeMap<usize, Number>,
+        offset: Number,
+        turn: [Number; 2],
+        turns: impl Fn(usize) -> bool,
+    ) -> JointVariable {
+        let whole = |(a, factor): (&usize, &Number)| {
+            factor.as_rational().filter(|factor| factor.is_int())?;
+            let size = factor.to_f64().abs();
+            (turns(*a) && size <= MOST_TURNS as f64).then_some(size as i64)
+        };
+        let sizes: Option<Vec<i64>> = factors.iter().map(whole).collect();
+        let is_whole = sizes.is_some_and(|sizes| sizes.iter().sum::<i64>() <= MOST_TURNS);
+        JointVariable { factors: factors.into_iter().collect(), offset, turn: Some(turn), is_whole }
+    }
+
     /// Of a joint whose angle a function computes: its variable, or the opposite where its first factor is negative, and whether it is the opposite.
     pub fn computed(&self) -> Option<(ComputedAngle, bool)> {
         let [sine, cosine] = self.turn.as_ref().filter(|_| !self.is_whole)?;
@@ -163,16 +202,89 @@ impl JointVariable {
 }
 
 impl Coupling {
-    /// The angles that functions compute, each once.
+    /// Whether the variable of a joint is a coordinate of its own and nothing else.
+    pub fn is_plain(&self, joint: usize) -> bool {
+        let JointVariable { factors, offset, .. } = &self.variables[joint];
+        let own = matches!(factors.as_slice(), [(a, factor)] if self.coordinates[*a] == joint && factor.is_one());
+        own && offset.is_zero()
+    }
+
+    /// The angles of joints that functions compute, each once.
     pub fn computed(&self) -> Vec<ComputedAngle> {
-        let mut all: Vec<ComputedAngle> = Vec::new();
-        for (angle, _) in self.variables.iter().filter_map(JointVariable::computed) {
-            if !all.contains(&angle) {
-                all.push(angle);
+        distinct(self.variables.iter())
+    }
+
+    /// The same, and behind them those of sums of joints.
+    pub fn all_computed(&self) -> Vec<ComputedAngle> {
+        distinct(self.variables.iter().chain(self.sums.iter().map(|sum| &sum.variable)))
+    }
+
+    /// Looks for the sums of joint variables about parallel axes.
+    pub(crate) fn find_sums(&mut self, joints: &[Joint]) {
+        for last in 0..joints.len() {
+            let (mut joint, mut minus) = (last, false);
+            let mut sum = self.sum_of_none();
+            while let Some(next) = self.plus(sum, (joint, minus), joints) {
+                sum = next;
+                let terms: Vec<(u16, bool)> = sum.joints.terms().collect();
+                let is_computed = |(joint, _): &(u16, bool)| !self.variables[usize::from(*joint)].is_whole;
+                if terms.len() > 1 && terms.iter().any(is_computed) {
+                    self.sums.push(sum.clone());
+                }
+                let Some((before, opposite)) = parallel_before(joint, joints).filter(|_| self.sums.len() < MOST_SUMS) else {
+                    break;
+                };
+                (joint, minus) = (before, minus != opposite);
             }
         }
-        all
     }
+
+    fn sum_of_none(&self) -> JointSum {
+        let turn = Some([Number::zero(), Number::one()]);
+        let variable = JointVariable { factors: Vec::new(), offset: Number::zero(), turn, is_whole: true };
+        JointSum { joints: AngleSum { plus: 0, minus: 0, turned: false }, variable }
+    }
+
+    /// A sum with a joint more; `None` of a joint that slides, or where the constant part gets long.
+    fn plus(&self, mut sum: JointSum, (joint, minus): (usize, bool), joints: &[Joint]) -> Option<JointSum> {
+        let signed = |number: &Number| if minus { -number } else { number.clone() };
+        let own = &self.variables[joint];
+        let ([s, c], [t, d]) = (sum.variable.turn?, own.turn.as_ref()?);
+        let t = signed(t);
+        let turn = [s.times(d).plus(&c.times(&t)), c.times(d).minus(&s.times(&t))];
+        if turn.iter().any(|number| number.terms().count() > MOST_TERMS) {
+            return None;
+        }
+        let mut factors: BTreeMap<usize, Number> = sum.variable.factors.into_iter().collect();
+        for (a, factor) in &own.factors {
+            let all = factors.entry(*a).or_insert_with(Number::zero);
+            *all = all.plus(&signed(factor));
+        }
+        factors.retain(|_, factor| !factor.is_zero());
+        let offset = sum.variable.offset.plus(&signed(&own.offset));
+        *(if minus { &mut sum.joints.minus } else { &mut sum.joints.plus }) |= 1 << joint;
+        let turns = |a: usize| joints[self.coordinates[a]].kind == JointKind::Revolute;
+        Some(JointSum { variable: JointVariable::of_angle(factors, offset, turn, turns), ..sum })
+    }
+}
+
+/// The angles that functions compute for variables, each once.
+fn distinct<'a>(variables: impl Iterator<Item = &'a JointVariable>) -> Vec<ComputedAngle> {
+    let mut all: Vec<ComputedAngle> = Vec::new();
+    for (angle, _) in variables.filter_map(JointVariable::computed) {
+        if !all.contains(&angle) {
+            all.push(angle);
+        }
+    }
+    all
+}
+
+/// The joint whose link carries a joint, where both turn about parallel axes, and whether these point opposite ways.
+fn parallel_before(joint: usize, joints: &[Joint]) -> Option<(usize, bool)> {
+    let parent = joints[joint].parent?.index();
+    let both_turn = [joint, parent].iter().all(|&i| joints[i].kind == JointKind::Revolute);
+    let [[.., x], [.., y], [.., z]] = &joints[joint].placement.rotation;
+    (both_turn && x.is_zero() && y.is_zero()).then(|| (parent, z.is_negative()))
 }
 
 /// A coordinate of an arm.
@@ -498,13 +610,8 @@ impl Manipulator {
 
     /// The first joint whose variable is no coordinate of its own alone.
     pub fn coupled_joint(&self) -> Option<&Joint> {
-        let variables = self.coupling.iter().flat_map(|coupling| &coupling.variables);
-        let is_plain = |variable: &JointVariable| matches!(variable.factors.as_slice(), [(_, factor)] if factor.is_one());
-        let coupled = |(i, variable): (usize, &JointVariable)| {
-            let has_coordinate = self.coupling.as_ref().is_some_and(|coupling| coupling.coordinates.contains(&i));
-            !(has_coordinate && is_plain(variable) && variable.offset.is_zero())
-        };
-        variables.enumerate().find(|&entry| coupled(entry)).map(|(i, _)| &self.joints[i])
+        let coupling = self.coupling.as_ref()?;
+        (0..self.joints.len()).find(|&i| !coupling.is_plain(i)).map(|i| &self.joints[i])
     }
 
     /// The joints with motors, and for each motor its speed over the rate of each coordinate; empty where each motor turns with one joint

@@ -10,6 +10,7 @@
 //! frames.rs      where joint frames lie
 //! bodies.rs      mass, centre of mass, inertia: no impossible body
 //! parents.rs     the tree of links, and where rows start
+//! closures.rs    points that two links share
 //! coupling.rs    joints that follow others
 //! joints.rs      limits, friction, spring
 //! motors.rs      rotors: what carries them, and what they spin with
@@ -25,6 +26,7 @@
 mod allow;
 mod bodies;
 mod choices;
+mod closures;
 mod coupling;
 mod evaluate;
 mod frames;
@@ -53,7 +55,7 @@ use evaluate::Evaluator;
 pub use names::{is_free_name, is_rust_name, module_name};
 pub use nominal::NominalValues;
 use parameters::Parameters;
-pub use places::{JointPlaces, Occurrence, Places, Role};
+pub use places::{Closure, JointPlaces, Occurrence, Places, Role};
 pub use plausible::{density_of_cuboid, doubt_of_density};
 
 /// Most named quantities: more than all numbers of an arm with `MAX_JOINTS` joints.
@@ -143,6 +145,7 @@ fn validate(
     }
     let described = description.joints.as_ref().map_or(&[][..], |joints| &joints.value);
     let inverse_kinematics = choices::inverse_kinematics(&description.inverse_kinematics, described, context.diagnostics);
+    let closures = closures::closures(description, &mut context);
     bodies::warn_of_planar(&mut context);
     // An unreadable expression may use any name.
     if complete {
@@ -163,7 +166,11 @@ fn validate(
         tips => tips.iter().map(|tip| (tip.joint.index(), &tip.tool)).collect(),
     };
     frames::lay(&mut joints, &ends, convention == Some(Convention::Urdf), &symbols);
-    let places = places::gather(description, context.evaluator.parameters.places_of_symbols());
+    let places = places::gather(description, context.evaluator.parameters.places_of_symbols(), closures?);
+    let coupling = coupling.map(|mut coupling| {
+        coupling.find_sums(&joints);
+        coupling
+    });
     let mut manipulator = Manipulator {
         name: description.name.as_ref()?.value.clone(),
         parameters: symbols,

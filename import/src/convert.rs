@@ -17,8 +17,9 @@ mod write;
 use std::collections::BTreeSet;
 
 use armgen_codegen::description::{
-    BodyDescription, Convention, JointDescription, LeadersDescription, PoseDescription, PoseElement, PosturesDescription,
-    RegressorDescription, RobotDescription, RotationDescription, SpringDescription, StribeckDescription, Value, INERTIA_ELEMENTS,
+    BodyDescription, ClosureDescription, Convention, JointDescription, LeadersDescription, PoseDescription, PoseElement,
+    PosturesDescription, RegressorDescription, RobotDescription, RotationDescription, SpringDescription, StribeckDescription,
+    Value, INERTIA_ELEMENTS,
 };
 use armgen_codegen::diagnostic::{Code, Diagnostic, Diagnostics};
 use armgen_codegen::document::yaml::has_comment;
@@ -27,7 +28,7 @@ use armgen_codegen::exact::{Number, Polynomial};
 use armgen_codegen::inverse_kinematics::{self, Redundancy};
 use armgen_codegen::kinds::{JointKind, TaskRow};
 use armgen_codegen::manipulator::{Manipulator, Placement};
-use armgen_codegen::source::{Source, Span};
+use armgen_codegen::source::{Source, Span, Spanned};
 use armgen_codegen::validate;
 
 use self::write::Writer;
@@ -145,6 +146,7 @@ impl<'d> Converter<'d> {
             }
         }
         self.tips(&rows, &mut text)?;
+        self.closes(&rows, &mut text);
         self.rest(&mut text);
         let moved = rows.rows.iter().any(|row| row.frame != Placement::identity());
         let named = matches!(description.regressor.as_ref().map(|r| &r.value), Some(RegressorDescription::Names(_)));
@@ -564,6 +566,32 @@ impl<'d> Converter<'d> {
         Some(())
     }
 
+    /// The points that two links share, where the frames of both links stay.
+    fn closes(&mut self, rows: &Rows<'_>, text: &mut Vec<String>) {
+        let names: Vec<&str> = self.arm.joints.iter().map(|joint| joint.name.as_str()).collect();
+        let stays = |link: &Option<Spanned<String>>| {
+            let place = link.as_ref().and_then(|link| names.iter().position(|name| *name == link.value));
+            place.is_none_or(|place| rows.rows[place].frame == Placement::identity())
+        };
+        let (kept, moved): (Vec<_>, Vec<_>) =
+            self.description.closes.iter().partition(|closure| stays(&closure.joint) && stays(&closure.with));
+        if !kept.is_empty() {
+            text.push("closes:".into());
+        }
+        for ClosureDescription { name, joint, at, with, there, .. } in kept {
+            let word = |key: &str, given: &Option<Spanned<String>>| given.as_ref().map(|given| format!("{key}: {}", given.value));
+            let point = |key: &str, given: &Option<Spanned<[Value; 3]>>| {
+                given.as_ref().map(|given| format!("{key}: {}", self.vector(&given.value)))
+            };
+            let name = name.as_ref().map(|name| format!("name: {}", crate::yaml::quoted(&name.value)));
+            let parts = [name, word("joint", joint), point("at", at), word("with", with), point("there", there)];
+            text.push(format!("  - {{{}}}", parts.into_iter().flatten().collect::<Vec<_>>().join(", ")));
+        }
+        if !moved.is_empty() {
+            self.lines.push("left out: points of `closes` on links whose frames are others".into());
+        }
+    }
+
     /// The parts that do not depend on frames.
     fn rest(&self, text: &mut Vec<String>) {
         // Every key, so that none is left out unseen; the first ones are written before.
@@ -584,6 +612,7 @@ impl<'d> Converter<'d> {
             regressor,
             inverse_kinematics,
             tips: _,
+            closes: _,
             allow,
         } = self.description;
         if let Some(task) = task {

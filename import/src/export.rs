@@ -464,6 +464,7 @@ impl Writer<'_> {
             regressor,
             inverse_kinematics: PosturesDescription { target, given },
             tips,
+            closes,
             allow,
         } = description;
         let several =
@@ -488,6 +489,7 @@ impl Writer<'_> {
                 "`inverse_kinematics`",
                 asked(target, given) || tips().any(|tip| asked(&tip.inverse_kinematics.target, &tip.inverse_kinematics.given)),
             ),
+            ("`closes`", !closes.is_empty()),
             ("`allow`", !allow.is_empty()),
             ("the names under `parameters`, whose values are written", !parameters.is_empty()),
         ] {

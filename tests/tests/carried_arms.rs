@@ -78,7 +78,7 @@ fn with_decimals(text: &str) -> String {
 /// The variables of the symbols that a function takes: joint angles as one of their symbols.
 fn variables(function: &Function) -> BTreeSet<Symbol> {
     let of = |symbol: Symbol| match symbol.angle() {
-        Some(sum) => sum.terms().map(|(joint, _)| Symbol::Sine(joint)).collect(),
+        Some(angle) => angle.terms().map(|(joint, _)| Symbol::Sine(joint)).collect(),
         None => vec![symbol],
     };
     function.symbols().into_iter().flat_map(of).collect()

@@ -42,6 +42,8 @@ const LINKED: &str = include_str!("../data/trees/linked_3.yaml");
 const SCREW: &str = include_str!("../data/trees/screw.yaml");
 /// A slide and a turn lead a turn.
 const HELIX: &str = include_str!("../data/trees/helix.yaml");
+/// A finger whose outer links bend with the inner one.
+const FINGER: &str = include_str!("../data/trees/finger.yaml");
 const ALL: [(&str, &str); 4] =
     [("parallelogram", PARALLELOGRAM), ("gripper_arm", GRIPPER), ("linked_3", LINKED), ("screw", SCREW)];
 
@@ -167,6 +169,79 @@ fn base_parameters_of_coupled_arms_are_counted_exactly() {
         let (vector, _) = base::base_combinations(&model.manipulator, &model.field);
         assert_eq!(vector.entries.len(), expected, "{name}");
     }
+}
+
+/// The links of a finger stand at q, 5/3 q and 2.19 q + 0.1 about one direction: functions take sines of these, not of the angles between links.
+#[test]
+fn sums_about_parallel_axes_are_one_angle() {
+    let turned = FINGER.replacen(
+        "    axis: [0, 1, 0]\n    follows: {middle: 0.785}",
+        "    axis: [0, -1, 0]\n    follows: {middle: -0.785}",
+        1,
+    );
+    let turned = turned.replacen("offset: 0.1", "offset: -0.1", 1);
+    assert_ne!(turned, FINGER);
+    let (source, finger) = generated(FINGER);
+    let passes = |source: &Source, generated: &Generated, text: &str| judged(source, generated, Language::Rust, text).passed();
+    assert!(passes(&source, &finger, &finger.module));
+    assert!(finger.module.contains("2.19 * q[1] + 0.1"), "{}", finger.module);
+    let robot = Interpreted::new(FINGER).expect("valid");
+    let kinematics = robot.module.functions.iter().find(|function| function.name() == "direct_kinematics").expect("emitted");
+    let mut factors: Vec<String> = kinematics.computed.values().map(|angle| angle.factors[0].1.to_string()).collect();
+    factors.sort();
+    assert_eq!(factors, ["219/100", "5/3"]);
+    for (of, by) in
+        [("2.19 * q[1] + 0.1", "2.19 * q[1]"), ("2.19 * q[1]", "2.18 * q[1]"), ("1.6666666666666667", "1.6666666666666665")]
+    {
+        let wrong = finger.module.replace(of, by);
+        assert_ne!(wrong, finger.module, "{of}");
+        assert!(!passes(&source, &finger, &wrong), "{by}");
+    }
+    let (source, other) = generated(&turned);
+    assert!(passes(&source, &other, &other.module));
+}
+
+/// More coordinates and computed angles together than an arm has joints at most.
+#[test]
+fn many_joints_may_each_add_another_one() {
+    let mut text = String::from("name: snake\nconvention: urdf\ngravity: [0, 0, -9.81]\njoints:\n");
+    for i in 0..18 {
+        let (axis, adds) =
+            (["[0, 0, 1]", "[0, 1, 0]"][i % 2], if i == 0 { String::new() } else { format!("    adds: {{j{}: 1/2}}\n", i - 1) });
+        text += &format!("  - name: j{i}\n    type: revolute\n    origin: {{xyz: [0.1, 0, 0]}}\n    axis: {axis}\n{adds}    link: {{mass: 1, com: [0.05, 0, 0], inertia: {{xx: 0.01, yy: 0.01, zz: 0.01}}}}\n");
+    }
+    let (source, generated) = chosen(&text, Selection::named(["gravity"]).expect("a function"));
+    let report = judged(&source, &generated, Language::Rust, &generated.module);
+    assert!(report.passed(), "{}", report.first_fault().unwrap_or_default());
+}
+
+/// A pin that closes is proved and changes no function; with a sign of a factor wrong the loop is open.
+#[test]
+fn closed_loops_are_proved() {
+    const PIN: &str =
+        "closes:\n  - {name: pin of the rod, joint: rod, at: [0.5, 0, 0], with: forearm, there: [-0.2, 0, 0]}\ntips:";
+    let codes = |text: &str| -> Vec<String> {
+        let (_, diagnostics) = validate::read(&Source::new("robot.yaml", text));
+        diagnostics.iter().filter(|d| d.code.severity() == Severity::Error).map(|d| d.code.name().to_owned()).collect()
+    };
+    let closed = PARALLELOGRAM.replacen("tips:", PIN, 1);
+    assert_eq!(codes(&closed), [""; 0]);
+    let kinematics = Selection::named(["inertia_matrix"]).expect("a function");
+    let body = |text: &str| chosen(text, kinematics.clone()).1.module.lines().skip(1).map(String::from).collect::<Vec<_>>();
+    assert_eq!(body(&closed), body(PARALLELOGRAM));
+    for (of, by) in [
+        ("follows: {crank: 1, lower: -1}", "follows: {crank: 1, lower: 1}"),
+        ("follows: {lower: 1, crank: -1}", "follows: {lower: 1}"),
+        ("at: [0.5, 0, 0]", "at: [0.5, 0, 1e-30]"),
+    ] {
+        let open = closed.replacen(of, by, 1);
+        assert_ne!(open, closed);
+        assert_eq!(codes(&open), ["open-loop"], "{by}");
+    }
+    assert_eq!(codes(&closed.replacen("with: forearm", "with: forarm", 1)), ["unknown-tip-joint"]);
+    // A pin where one link carries the other closes whatever the factor; a link that turns leaves the base.
+    let pins = "closes:\n  - {joint: middle, with: inner, there: [0.045, 0, 0]}\n  - {joint: inner, with: base}\ntool:";
+    assert_eq!(codes(&FINGER.replacen("tool:", pins, 1)), ["open-loop"]);
 }
 
 /// Factors with another digit, without a sign or with another constant: the argument of the sine is another one.

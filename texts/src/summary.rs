@@ -84,6 +84,7 @@ fn arm(source: &Source, description: &RobotDescription, manipulator: &Manipulato
         row("coordinates", manipulator.coordinates().iter().map(|of| of.joint.name.clone()).collect::<Vec<_>>().join(", "));
         joints::couplings(manipulator).into_iter().for_each(|sentence| row("coupling", sentence));
     }
+    joints::closures(description).into_iter().for_each(|sentence| row("closed loop", sentence));
     joints::motors(manipulator).into_iter().for_each(|sentence| row("motor", sentence));
     let convention = match description.convention.as_ref().map(|c| c.value) {
         Some(Convention::Urdf) => "urdf: origin, then the motion about or along axis",

@@ -248,8 +248,8 @@ fn of_description(manipulator: &Manipulator) -> Hash {
             arm.part(payload);
         }
     }
-    if let Some(Coupling { coordinates, limits: _, variables }) = coupling {
-        // Limits of coordinates follow from those of joints.
+    if let Some(Coupling { coordinates, limits: _, variables, sums: _ }) = coupling {
+        // Limits of coordinates and sums of variables follow from those of joints.
         arm.word(&format!("coupled {coordinates:?}"));
         for variable in variables {
             arm.word("variable");

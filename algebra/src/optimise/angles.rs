@@ -9,7 +9,7 @@ use std::collections::BTreeSet;
 
 use super::circuit::{Circuit, Edge, Gate, GateId};
 use crate::ring::count::SINE_COSINE_COST;
-use crate::ring::{AngleSum, Node, Symbol};
+use crate::ring::{Angle, AngleSum, Node};
 
 /// A run of parallel axes with at most this many sums is tried in all combinations; in a longer one each sum is tried by itself.
 const TOGETHER: usize = 6;
@@ -17,14 +17,22 @@ const TOGETHER: usize = 6;
 /// Gates that are a sine or a cosine of a sum, and the leaves that stand for them.
 struct Found {
     replaced: Vec<(GateId, Edge)>,
-    additions: usize,
+    /// How many operations form the angle.
+    operations: usize,
 }
 
 /// Replaces the sines and cosines of sums of angles about parallel axes; `parallel` has for each joint the one before it on such an axis, and
-/// whether that points the other way.
+/// whether that points the other way. So are those of computed angles, which may be sums.
 pub(super) fn sums_of_angles(circuit: &mut Circuit, parallel: &[Option<(u16, bool)>]) {
-    for run in runs(parallel) {
-        let found: Vec<Found> = run.into_iter().filter_map(|sum| find(circuit, sum)).collect();
+    let sums = |run: Vec<AngleSum>| run.into_iter().map(|sum| (Angle::Sum(sum), sum.additions())).collect();
+    let mut runs: Vec<Vec<(Angle, usize)>> = runs(parallel).into_iter().map(sums).collect();
+    let computed = circuit.field.computed().cloned();
+    runs.extend(computed.map(|all| {
+        let operations = |(mul, add): (usize, usize)| mul + add;
+        all.all().map(|(index, angle)| (Angle::One(index), operations(angle.operations()))).collect()
+    }));
+    for run in runs {
+        let found: Vec<Found> = run.into_iter().filter_map(|(angle, operations)| find(circuit, angle, operations)).collect();
         if found.len() <= TOGETHER {
             let chosen = (1usize..1 << found.len()).map(|set| chosen(&found, set)).min_by_key(|chosen| weight(circuit, chosen));
             if let Some(chosen) = chosen {
@@ -63,11 +71,11 @@ fn runs(parallel: &[Option<(u16, bool)>]) -> Vec<Vec<AngleSum>> {
     runs
 }
 
-/// The gates that are the sine or the cosine of a sum.
-fn find(circuit: &mut Circuit, sum: AngleSum) -> Option<Found> {
+/// The gates that are the sine or the cosine of an angle.
+fn find(circuit: &mut Circuit, angle: Angle, operations: usize) -> Option<Found> {
     let order = circuit.order();
     let mut replaced = Vec::new();
-    for symbol in [Symbol::SineOf(sum), Symbol::CosineOf(sum)] {
+    for symbol in angle.circle() {
         let leaf = circuit.constants.input(symbol);
         let value = circuit.constants.fingerprint(leaf);
         let negative = value.map(|x| circuit.field.neg(x));
@@ -84,7 +92,7 @@ fn find(circuit: &mut Circuit, sum: AngleSum) -> Option<Found> {
             replaced.extend(gates.into_iter().map(|(gate, negated)| (gate, Edge::new(id, negated))));
         }
     }
-    (!replaced.is_empty()).then(|| Found { replaced, additions: sum.additions() })
+    (!replaced.is_empty()).then_some(Found { replaced, operations })
 }
 
 fn chosen(found: &[Found], set: usize) -> Vec<&Found> {
@@ -93,11 +101,11 @@ fn chosen(found: &[Found], set: usize) -> Vec<&Found> {
 
 /// The cost of the circuit with some of the sums.
 fn weight(circuit: &mut Circuit, chosen: &[&Found]) -> usize {
-    let additions: usize = chosen.iter().map(|one| one.additions).sum();
+    let angles: usize = chosen.iter().map(|one| one.operations).sum();
     let mut weight = 0;
     circuit.attempt(|circuit| {
         take(circuit, chosen);
-        weight = circuit.operations() + additions + SINE_COSINE_COST * pairs(circuit);
+        weight = circuit.operations() + angles + SINE_COSINE_COST * pairs(circuit);
         false
     });
     weight
@@ -127,5 +135,5 @@ fn pairs(circuit: &Circuit) -> usize {
         },
         _ => None,
     });
-    leaves.collect::<BTreeSet<AngleSum>>().len()
+    leaves.collect::<BTreeSet<Angle>>().len()
 }

@@ -2,7 +2,7 @@
 
 use std::collections::BTreeSet;
 
-use super::{AngleSum, ExprId, Node, Pool, Symbol};
+use super::{Angle, ExprId, Node, Pool, Symbol};
 
 /// A division counts like so many additions.
 pub const DIVISION_COST: usize = 4;
@@ -37,7 +37,7 @@ impl Pool {
     }
 
     /// The angles whose sines and cosines the expressions need.
-    pub fn angles(&self, exprs: &[ExprId]) -> BTreeSet<AngleSum> {
+    pub fn angles(&self, exprs: &[ExprId]) -> BTreeSet<Angle> {
         let needed = self.reachable(exprs);
         let angle = |index: usize| match self.nodes[index] {
             Node::Symbol(symbol) => symbol.angle(),

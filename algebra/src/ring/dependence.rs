@@ -12,7 +12,7 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use super::{AngleSum, ExprId, Fingerprint, Node, Pool, Symbol};
+use super::{Angle, AngleSum, ExprId, Fingerprint, Node, Pool, Symbol};
 use crate::scramble::scramble;
 
 /// What symbols depend on.
@@ -94,8 +94,8 @@ impl Pool {
                         continue;
                     };
                     let value = |symbol| [0, 1].map(|point| self.symbol_value(symbol, point));
-                    let derivative =
-                        if is_sine(symbol) { value(Symbol::CosineOf(angle)) } else { self.negated(value(Symbol::SineOf(angle))) };
+                    let [sine, cosine] = angle.circle();
+                    let derivative = if is_sine(symbol) { value(cosine) } else { self.negated(value(sine)) };
                     let slope = times(own, derivative);
                     angle.terms().for_each(|(joint, minus)| count(Variable::Angle(joint), signed(slope, minus)));
                 }
@@ -111,8 +111,13 @@ fn is_sine(symbol: Symbol) -> bool {
 
 /// The symbol where some variables are 0.
 fn without(pool: &mut Pool, symbol: Symbol, zero: &BTreeSet<Variable>) -> ExprId {
-    let Some(angle) = symbol.angle() else {
-        return if zero.contains(&Variable::Symbol(symbol)) { ExprId::ZERO } else { pool.symbol(symbol) };
+    let angle = match symbol.angle() {
+        None if zero.contains(&Variable::Symbol(symbol)) => return ExprId::ZERO,
+        Some(Angle::One(i)) if zero.contains(&Variable::Angle(i)) => {
+            return if is_sine(symbol) { ExprId::ZERO } else { ExprId::ONE };
+        }
+        None | Some(Angle::One(_)) => return pool.symbol(symbol),
+        Some(Angle::Sum(sum)) => sum,
     };
     let bits =
         angle.terms().filter(|&(joint, _)| zero.contains(&Variable::Angle(joint))).fold(0, |bits, (joint, _)| bits | 1 << joint);

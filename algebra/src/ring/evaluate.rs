@@ -105,16 +105,13 @@ impl Pool {
         move |symbol| {
             let Some((angle, angles)) = symbol.angle().zip(self.field.computed()) else { return of(symbol) };
             let unit = |unit: u16| (of(Symbol::Sine(unit)), of(Symbol::Cosine(unit)));
-            let turn = || unreachable!("coupled arms have no turned sums");
-            let (sine, cosine) = angle.circle(
-                (Number::zero(), Number::one()),
-                |index| angles.rational_point(index, unit),
-                turn,
-                |(s, c), (t, d), minus| {
-                    let t = if minus { -t } else { t.clone() };
-                    (s.times(d).plus(&c.times(&t)), c.times(d).minus(&s.times(&t)))
-                },
-            );
+            // Coupled arms have no turned sums.
+            let zero = (Number::zero(), Number::one());
+            let (sine, cosine) = angle.terms().fold(zero, |(s, c), (index, minus)| {
+                let (t, d) = angles.rational_point(index, unit);
+                let t = if minus { -&t } else { t };
+                (s.times(&d).plus(&c.times(&t)), c.times(&d).minus(&s.times(&t)))
+            });
             if matches!(symbol, Symbol::Sine(_) | Symbol::SineOf(_)) {
                 sine
             } else {

@@ -3,6 +3,7 @@
 //! Plain text is `+ - * / ^`, `sin`, `cos`, `sqrt`, `pi`, the names `q1 dq1 ddq1 dqr1 ddqr1 tau1 sign(dq1) abs(g1) sign(g1)` and parameter
 //! names, with numbers as exact fractions: a formula that a computer-algebra system reads.
 
+use std::collections::BTreeMap;
 use std::rc::Rc;
 
 use dashu_base::{Abs, Signed};
@@ -101,15 +102,60 @@ impl Printer<'_> {
         }
     }
 
+    /// The angle of an index: a joint variable, or a computed angle as the sum that it is.
+    pub fn angle_of(&self, index: u16) -> String {
+        self.computed(index).unwrap_or_else(|| self.symbol(Symbol::Position(index)))
+    }
+
     /// A computed angle as the sum that it is.
     fn computed(&self, index: u16) -> Option<String> {
         let angle = self.computed?.get(index)?;
+        let factors = angle.factors.iter().map(|(a, factor)| (*a, factor));
+        Some(self.angle(factors, &angle.offset))
+    }
+
+    /// A sum of coordinates and a constant.
+    fn angle<'n>(&self, factors: impl IntoIterator<Item = (u16, &'n Number)>, offset: &Number) -> String {
         let mut sum = Sum::default();
-        for (a, factor) in &angle.factors {
-            self.product(&mut sum, factor, [self.symbol(Symbol::Position(*a))]);
+        for (a, factor) in factors {
+            self.product(&mut sum, factor, [self.symbol(Symbol::Position(a))]);
         }
-        self.constant(&mut sum, &angle.offset);
-        Some(sum.text)
+        self.constant(&mut sum, offset);
+        if sum.text.is_empty() {
+            "0".into()
+        } else {
+            sum.text
+        }
+    }
+
+    /// The angle of a harmonic with computed angles in it, as one sum of coordinates that begins with a positive factor; and whether it is the
+    /// opposite angle.
+    fn whole(&self, harmonic: &Harmonic) -> Option<(String, bool)> {
+        let computed = self.computed?;
+        harmonic.angles.iter().any(|(index, _)| computed.get(*index).is_some()).then(|| {
+            let (mut factors, mut offset): (BTreeMap<u16, Number>, Number) = (BTreeMap::new(), Number::zero());
+            for &(index, k) in &harmonic.angles {
+                let k = Number::from(i64::from(k));
+                let mut add = |a: u16, factor: &Number| {
+                    let sum = factors.entry(a).or_insert_with(Number::zero);
+                    *sum = sum.plus(factor);
+                };
+                match computed.get(index) {
+                    Some(angle) => {
+                        angle.factors.iter().for_each(|(a, factor)| add(*a, &k.times(factor)));
+                        offset = offset.plus(&k.times(&angle.offset));
+                    }
+                    None => add(index, &k),
+                }
+            }
+            factors.retain(|_, factor| !factor.is_zero());
+            let opposite = factors.values().next().unwrap_or(&offset).leads_negative();
+            if opposite {
+                factors.values_mut().for_each(|factor| *factor = -&*factor);
+                offset = -&offset;
+            }
+            (self.angle(factors.iter().map(|(a, factor)| (*a, factor)), &offset), opposite)
+        })
     }
 
     /// A formula.
@@ -128,7 +174,9 @@ impl Printer<'_> {
                     self.term(&mut inner, &rest, factors, None);
                 }
                 let inner = format!("({})", inner.text);
-                self.product(&mut sum, &Number::from(content), [inner, self.harmonic(harmonic)]);
+                let (wave, negative) = self.harmonic(harmonic);
+                let content = Number::from(content);
+                self.product(&mut sum, &if negative { -&content } else { content }, [inner, wave]);
             }
         }
         if sum.text.is_empty() {
@@ -140,14 +188,17 @@ impl Printer<'_> {
 
     fn term(&self, sum: &mut Sum, coefficient: &Number, factors: &Powers, harmonic: Option<&Harmonic>) {
         let mut parts: Vec<String> = Vec::new();
+        let mut negative = false;
         if let Some(harmonic) = harmonic.filter(|w| !w.angles.is_empty()) {
-            parts.push(self.harmonic(harmonic));
+            let wave;
+            (wave, negative) = self.harmonic(harmonic);
+            parts.push(wave);
         }
         for &(symbol, power) in factors {
             let name = self.symbol(symbol);
             parts.push(if power == 1 { name } else { self.power(&name, power as i32) });
         }
-        self.product(sum, coefficient, parts);
+        self.product(sum, &if negative { -coefficient } else { coefficient.clone() }, parts);
     }
 
     fn power(&self, base: &str, power: i32) -> String {
@@ -273,15 +324,22 @@ impl Printer<'_> {
         }
     }
 
-    fn harmonic(&self, harmonic: &Harmonic) -> String {
+    /// A harmonic, and whether it is to be negated.
+    fn harmonic(&self, harmonic: &Harmonic) -> (String, bool) {
+        let name = if harmonic.sine { "sin" } else { "cos" };
+        if let Some((angle, opposite)) = self.whole(harmonic) {
+            let text = match self.notation {
+                Notation::Text => format!("{name}({angle})"),
+                Notation::Latex => format!("\\{name}\\left({angle}\\right)"),
+            };
+            return (text, opposite && harmonic.sine);
+        }
         let mut sum = Sum::default();
         for (index, k) in &harmonic.angles {
             let size = k.unsigned_abs();
-            let name = match (self.computed(*index), self.notation) {
-                (Some(angle), Notation::Text) if size == 1 && harmonic.angles.len() == 1 => angle,
-                (Some(angle), _) => format!("({angle})"),
-                (None, Notation::Text) => format!("q{}", index + 1),
-                (None, Notation::Latex) => format!("q_{{{}}}", index + 1),
+            let name = match self.notation {
+                Notation::Text => format!("q{}", index + 1),
+                Notation::Latex => format!("q_{{{}}}", index + 1),
             };
             let text = match (size, self.notation) {
                 (1, _) => name,
@@ -290,12 +348,12 @@ impl Printer<'_> {
             };
             sum.push(*k < 0, &text);
         }
-        let name = if harmonic.sine { "sin" } else { "cos" };
-        match self.notation {
+        let text = match self.notation {
             Notation::Text => format!("{name}({})", sum.text),
             Notation::Latex if harmonic.order() == 1 => format!("\\{name} {}", sum.text),
             Notation::Latex => format!("\\{name}\\left({}\\right)", sum.text),
-        }
+        };
+        (text, false)
     }
 
     /// A sum of products: of each a coefficient and its factors, printed already, with their powers; those below 0 are divided by.

@@ -44,8 +44,34 @@ fn motors_that_turn_with_several_joints_are_told() {
     let told = words.join(" ");
     assert!(told.contains("motor that of J6 rides on link J3 and turns by 50 J6 + J4 - 50 J5 beside it"), "{told}");
     assert!(!told.contains("that of J3 rides"), "{told}");
-    let said = err(&check(&["excite", &wrist], 1));
-    assert!(said.contains("the motor of joint `J5` turns with several joints"), "{said}");
+}
+
+/// A motor of a coupled joint turns by the rates of coordinates.
+#[test]
+fn motors_of_coupled_joints_are_told_in_coordinates() {
+    let linked = file("tests/data/trees/linked_3.yaml");
+    let text = out(&check(&["check", &linked], 0));
+    let told = text.split_whitespace().collect::<Vec<_>>().join(" ");
+    assert!(told.contains("motor that of J3 rides on link J2 and turns by 120 J2 + 120 J3 beside it"), "{told}");
+    assert!(!told.contains("that of J2 rides"), "{told}");
+}
+
+/// Commands for joints that move by themselves name the file, the joint, the reason and a remedy.
+#[test]
+fn commands_for_single_joints_refuse_couplings() {
+    let folder = folder("couplings-refused");
+    let path = folder.join("path.yaml").display().to_string();
+    let (wrist, gripper) = (file("tests/data/trees/coupled_wrist.yaml"), file("tests/data/trees/gripper_arm.yaml"));
+    for (robot, joint, remedy) in
+        [(&wrist, "the motor of joint `J5`", "leave out `coupling`"), (&gripper, "joint `finger_right`", "`follows`")]
+    {
+        for arguments in [vec!["time", robot, &path], vec!["excite", robot], vec!["identify", robot, &path]] {
+            let said = err(&check(&arguments, 1));
+            let words = said.split_whitespace().collect::<Vec<_>>().join(" ");
+            let command = format!("`armgen {}`", arguments[0]);
+            assert!([robot.as_str(), joint, &command, remedy].iter().all(|part| words.contains(part)), "{words}");
+        }
+    }
 }
 
 /// The limits of a coordinate are the tighter ones of its joint and of those that follow it.

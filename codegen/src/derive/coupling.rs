@@ -8,7 +8,8 @@
 //!
 //! Under a constant map Christoffel's symbols of the first kind are carried over term by term: S' C S is Christoffel's of S' B S.
 //! Where a joint that turns follows others by whole numbers, its sine and cosine are polynomials in those of coordinates. Else they are those of an
-//! angle that the function computes ([`ComputedAngle`]), which the field of the coordinates relates to others. So the pool of coordinates
+//! angle that the function computes ([`ComputedAngle`]), which the field of the coordinates relates to others; of joints about parallel axes
+//! there is one for their sum, too. So the pool of coordinates
 //! finds by its fingerprints all that the coupling cancels.
 
 use std::cmp::Ordering;
@@ -36,7 +37,7 @@ impl Coupled {
             variable.factors.iter().map(|(a, factor)| (*a, pool.constant(factor))).collect()
         };
         let rows = coupling.variables.iter().map(|variable| row(pool, variable)).collect();
-        Coupled { coupling: Arc::new(coupling.clone()), rows, computed: coupling.computed() }
+        Coupled { coupling: Arc::new(coupling.clone()), rows, computed: coupling.all_computed() }
     }
 
     /// The field of coordinates from that of joint variables.
@@ -143,7 +144,12 @@ impl Coupled {
 
     /// Sine and cosine of a sum of joint variables.
     fn circle(&self, pool: &mut Pool, sum: AngleSum) -> (ExprId, ExprId) {
-        if let Some(sum) = self.as_sum(sum) {
+        let known = self.coupling.sums.iter().find(|known| known.joints == sum);
+        let terms: Vec<(&JointVariable, bool)> = match known {
+            Some(known) => vec![(&known.variable, false)],
+            None => sum.terms().map(|(joint, minus)| (self.variable(joint), minus)).collect(),
+        };
+        if let Some(sum) = as_sum(&terms) {
             let (sum, opposite) = sum.unsigned();
             let (sine, cosine) = match sum.plus | sum.minus {
                 one if one.is_power_of_two() => {
@@ -158,8 +164,7 @@ impl Coupled {
         let plus = |pool: &mut Pool, (s, c): (ExprId, ExprId), (t, d): (ExprId, ExprId)| {
             (pool.dot(&[s, c], &[d, t]), pool.dot(&[c, -s], &[d, t]))
         };
-        for (joint, minus) in sum.terms() {
-            let variable = self.variable(joint);
+        for (variable, minus) in terms {
             if let Some((sine, cosine)) = self.computed(pool, variable) {
                 circle = plus(pool, circle, (sine.signed(minus), cosine));
                 continue;
@@ -179,31 +184,30 @@ impl Coupled {
         circle
     }
 
-    /// Sine and cosine of a joint variable whose angle the function computes.
+    /// Sine and cosine of a variable whose angle the function computes.
     fn computed(&self, pool: &mut Pool, variable: &JointVariable) -> Option<(ExprId, ExprId)> {
         let (angle, opposite) = variable.computed()?;
         let place = self.computed.iter().position(|of| *of == angle)?;
         let index = (self.coupling.coordinates.len() + place) as u16;
         Some((pool.symbol(Symbol::Sine(index)).signed(opposite), pool.symbol(Symbol::Cosine(index))))
     }
+}
 
-    /// A sum of joint variables as a sum of coordinates, where it is one without a constant in which each stands once.
-    fn as_sum(&self, sum: AngleSum) -> Option<AngleSum> {
-        let mut all = AngleSum { plus: 0, minus: 0, turned: false };
-        for (joint, minus) in sum.terms() {
-            let JointVariable { factors, offset, is_whole, .. } = self.variable(joint);
-            for (a, factor) in factors {
-                let opposite = factor.sign() == Ordering::Less;
-                let is_one = if opposite { (-factor).is_one() } else { factor.is_one() };
-                if !is_one || (all.plus | all.minus) >> a & 1 == 1 {
-                    return None;
-                }
-                *(if opposite != minus { &mut all.minus } else { &mut all.plus }) |= 1 << a;
-            }
-            if !offset.is_zero() || !is_whole {
+/// A sum of variables, some of them taken away, as a sum of coordinates, where it is one without a constant in which each stands once.
+fn as_sum(terms: &[(&JointVariable, bool)]) -> Option<AngleSum> {
+    let mut all = AngleSum { plus: 0, minus: 0, turned: false };
+    for (JointVariable { factors, offset, is_whole, .. }, minus) in terms {
+        for (a, factor) in factors {
+            let opposite = factor.sign() == Ordering::Less;
+            let is_one = if opposite { (-factor).is_one() } else { factor.is_one() };
+            if !is_one || (all.plus | all.minus) >> a & 1 == 1 {
                 return None;
             }
+            *(if opposite != *minus { &mut all.minus } else { &mut all.plus }) |= 1 << a;
         }
-        (all.plus | all.minus != 0).then_some(all)
+        if !offset.is_zero() || !is_whole {
+            return None;
+        }
     }
+    (all.plus | all.minus != 0).then_some(all)
 }

@@ -15,6 +15,7 @@ use super::arm::Arm;
 use super::parameters::View;
 use super::quantities::kinematics::geometric_jacobian;
 use crate::exact::{Angle, Number, Rational};
+use crate::ring::field::computed::ComputedAngles;
 use crate::ring::normal_form::{Harmonic, NormalForm, Powers};
 use crate::ring::print::{Notation, Printer};
 use crate::ring::{ExprId, Pool, Symbol};
@@ -104,9 +105,9 @@ pub fn determinant(model: &Model, view: View<'_>) -> Option<Determinant> {
     let (mut simple, task) = without_fixed(&mut pool, &[value], &task);
     let reduced = of_columns(&mut simple, &task)[(1 << task.len()) - 1];
     debug_assert!(simple.fingerprint(reduced) == pool.fingerprint(value));
-    // Factors of computed angles are not told apart.
-    let form = simple.normal_forms(&[reduced], TERMS).remove(0).filter(|_| simple.field().computed().is_none());
-    let factors = form.as_ref().map_or_else(Vec::new, |form| factors(model, form));
+    let form = simple.normal_forms(&[reduced], TERMS).remove(0);
+    let angles = simple.field().computed().map(|computed| &**computed);
+    let factors = form.as_ref().map_or_else(Vec::new, |form| factors(model, angles, form));
     Some(Determinant { pool: simple, value: reduced, form, factors })
 }
 
@@ -157,8 +158,8 @@ enum Variable {
 }
 
 /// The factors of a form: contents in single variables, then what is left; the constant factor goes into the first.
-fn factors(model: &Model, form: &NormalForm) -> Vec<Factor> {
-    let (mut found, mut rest) = contents(model, vec![form.clone()]);
+fn factors(model: &Model, angles: Option<&ComputedAngles>, form: &NormalForm) -> Vec<Factor> {
+    let (mut found, mut rest) = contents(model, angles, vec![form.clone()]);
     let rest = rest.remove(0);
     let constant = rest.terms().all(|(harmonic, factors, _)| harmonic.angles.is_empty() && factors.is_empty());
     if constant || found.is_empty() {
@@ -177,13 +178,18 @@ fn factors(model: &Model, form: &NormalForm) -> Vec<Factor> {
     found.into_iter().map(|(form, zeros)| Factor { form, zeros }).collect()
 }
 
-/// The contents that some forms share in single variables, with their zeros, and each form divided by them.
-fn contents(model: &Model, mut rest: Vec<NormalForm>) -> (Vec<(NormalForm, Zeros)>, Vec<NormalForm>) {
+/// The contents that some forms share in single variables, with their zeros, and each form divided by them. A computed angle, one of `computed`, is a
+/// variable by itself: what is a product whatever the angles is a product where they are related.
+fn contents(
+    model: &Model,
+    computed: Option<&ComputedAngles>,
+    mut rest: Vec<NormalForm>,
+) -> (Vec<(NormalForm, Zeros)>, Vec<NormalForm>) {
     let mut found = Vec::new();
     let angles: BTreeSet<u16> = rest.iter().flat_map(NormalForm::angles).collect();
     let positions: BTreeSet<u16> = rest.iter().flat_map(positions).collect();
     for variable in angles.into_iter().map(Variable::Angle).chain(positions.into_iter().map(Variable::Position)) {
-        if let Some((parts, quotients)) = content(model, &rest, variable) {
+        if let Some((parts, quotients)) = content(model, computed, &rest, variable) {
             rest = quotients;
             found.extend(parts);
         }
@@ -212,7 +218,12 @@ fn zeros_without_joints(form: &NormalForm) -> Zeros {
 }
 
 /// The content of some forms in one variable, in factors with their zeros, and the quotients; `None` without a common factor.
-fn content(model: &Model, forms: &[NormalForm], variable: Variable) -> Option<(Vec<(NormalForm, Zeros)>, Vec<NormalForm>)> {
+fn content(
+    model: &Model,
+    computed: Option<&ComputedAngles>,
+    forms: &[NormalForm],
+    variable: Variable,
+) -> Option<(Vec<(NormalForm, Zeros)>, Vec<NormalForm>)> {
     let groups: Vec<_> = forms.iter().map(|form| split(form, variable)).collect();
     let all = || groups.iter().flat_map(BTreeMap::values);
     let degree = all().map(Univariate::degree).max()?;
@@ -243,7 +254,7 @@ fn content(model: &Model, forms: &[NormalForm], variable: Variable) -> Option<(V
         .into_iter()
         .map(|(part, degree)| {
             let form = from_univariate(&part, variable, degree);
-            let zeros = zeros(&form, variable, &part);
+            let zeros = zeros(&form, computed, variable, &part);
             (form, zeros)
         })
         .collect();
@@ -345,22 +356,26 @@ fn half_angle_term(angle: u16, a: usize, b: usize, c: &Number) -> NormalForm {
 }
 
 /// Values of a joint variable in both notations, each as `print` gives it.
-fn at(print: impl Fn(&Printer<'_>) -> String) -> Zeros {
+fn at(computed: Option<&ComputedAngles>, print: impl Fn(&Printer<'_>) -> String) -> Zeros {
     Zeros::Of(
         [Notation::Text, Notation::Latex]
-            .map(|notation| print(&Printer { notation, parameters: &[], velocities: &[], computed: None, digits: None })),
+            .map(|notation| print(&Printer { notation, parameters: &[], velocities: &[], computed, digits: None })),
     )
 }
 
 /// Where a factor in one variable is zero.
-fn zeros(form: &NormalForm, variable: Variable, polynomial: &Univariate) -> Zeros {
+fn zeros(form: &NormalForm, computed: Option<&ComputedAngles>, variable: Variable, polynomial: &Univariate) -> Zeros {
+    let at = |print: &dyn Fn(&Printer<'_>) -> String| at(computed, print);
     let coefficient = |angles: Vec<(u16, i32)>, sine: bool| {
         form.terms().find(|(w, _, _)| w.angles == angles && w.sine == sine).map_or(Number::zero(), |(_, _, c)| c.clone())
     };
     let (Variable::Position(i) | Variable::Angle(i)) = variable;
-    let name = |printer: &Printer<'_>| printer.symbol(Symbol::Position(i));
+    let name = |printer: &Printer<'_>| match variable {
+        Variable::Position(i) => printer.symbol(Symbol::Position(i)),
+        Variable::Angle(i) => printer.angle_of(i),
+    };
     let implicitly = || {
-        at(|printer| match printer.notation {
+        at(&|printer| match printer.notation {
             Notation::Text => format!("{} with {} = 0", name(printer), printer.form(form)),
             Notation::Latex => format!("{} \\text{{ with }} {} = 0", name(printer), printer.form(form)),
         })
@@ -369,7 +384,7 @@ fn zeros(form: &NormalForm, variable: Variable, polynomial: &Univariate) -> Zero
         return match polynomial.coefficients() {
             [zero, one] => {
                 let root = (-zero).checked_div(one).expect("the leading coefficient is not zero");
-                at(|printer| format!("{} = {}", name(printer), printer.number(&root)))
+                at(&|printer| format!("{} = {}", name(printer), printer.number(&root)))
             }
             [zero, one, two] => quadratic(&name, zero, one, two),
             _ => implicitly(),
@@ -380,7 +395,7 @@ fn zeros(form: &NormalForm, variable: Variable, polynomial: &Univariate) -> Zero
     if highest != 1 {
         return implicitly();
     }
-    let modulo_pi = |value: &dyn Fn(&Printer<'_>) -> String| at(|p| format!("{} = {}{}", name(p), value(p), modulo(p, "")));
+    let modulo_pi = |value: &dyn Fn(&Printer<'_>) -> String| at(&|p| format!("{} = {}{}", name(p), value(p), modulo(p, "")));
     match (a.is_zero(), b.is_zero(), c.is_zero()) {
         (true, false, true) => modulo_pi(&|_| "0".into()),
         (false, true, true) => modulo_pi(&|printer| fraction_of_pi(printer, 1, 2)),
@@ -388,7 +403,7 @@ fn zeros(form: &NormalForm, variable: Variable, polynomial: &Univariate) -> Zero
             let ratio = (-&a).checked_div(&b).expect("b is not zero");
             modulo_pi(&|printer| call(printer, "atan", "\\arctan", &printer.number(&ratio)))
         }
-        _ => linear_with_constant(&name, &a, &b, &c),
+        _ => linear_with_constant(&at, &name, &a, &b, &c),
     }
 }
 
@@ -441,11 +456,11 @@ fn quadratic(name: &dyn Fn(&Printer<'_>) -> String, c: &Number, b: &Number, a: &
         None => Zeros::Never,
         Some(zero) if zero.is_zero() => {
             let root = root(-b);
-            at(|printer| format!("{} = {}", name(printer), printer.number(&root)))
+            at(None, |printer| format!("{} = {}", name(printer), printer.number(&root)))
         }
         Some(width) => {
             let roots = [root(&-b - &width), root(&-b + &width)];
-            at(|printer| {
+            at(None, |printer| {
                 let [low, high] = roots.each_ref().map(|root| printer.number(root));
                 let or = if printer.notation == Notation::Text { " or " } else { " \\text{ or } " };
                 format!("{} = {low}{or}{high}", name(printer))
@@ -455,7 +470,13 @@ fn quadratic(name: &dyn Fn(&Printer<'_>) -> String, c: &Number, b: &Number, a: &
 }
 
 /// a cos q + b sin q + c = 0.
-fn linear_with_constant(name: &dyn Fn(&Printer<'_>) -> String, a: &Number, b: &Number, c: &Number) -> Zeros {
+fn linear_with_constant(
+    at: &dyn Fn(&dyn Fn(&Printer<'_>) -> String) -> Zeros,
+    name: &dyn Fn(&Printer<'_>) -> String,
+    a: &Number,
+    b: &Number,
+    c: &Number,
+) -> Zeros {
     let square = &(a * a) + &(b * b);
     if (&square - &(c * c)).sign() == std::cmp::Ordering::Less {
         return Zeros::Never;
@@ -468,7 +489,7 @@ fn linear_with_constant(name: &dyn Fn(&Printer<'_>) -> String, a: &Number, b: &N
         let part = Number::from(Rational::from(n) / Rational::from(d));
         Angle::new(&part * &Number::pi()).cos() == ratio
     });
-    at(|printer| {
+    at(&|printer| {
         let text = printer.notation == Notation::Text;
         let centre = call(printer, "atan2", "\\operatorname{atan2}", &format!("{}, {}", printer.number(b), printer.number(a)));
         let opening = match exact {

@@ -7,6 +7,7 @@ use crate::exact::Number;
 use crate::kinds::Feature;
 use crate::program::listing::decimal;
 use crate::program::{Cost, Function, Module, Operand};
+use crate::ring::Symbol;
 
 /// A piece of documentation; between two there is an empty line.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -280,11 +281,10 @@ pub(super) fn rows(table: &[(String, String)]) -> impl Iterator<Item = String> +
 /// The joint whose variable a function turns by a constant angle, counted from 1.
 fn turned_joint(function: &Function) -> Option<usize> {
     let operands = function.steps.iter().flat_map(|step| [&step.left, &step.right]);
-    let angles = operands.filter_map(|operand| match operand {
-        Operand::Input(symbol) => symbol.angle(),
+    let turned = operands.filter_map(|operand| match operand {
+        Operand::Input(Symbol::SineOf(sum) | Symbol::CosineOf(sum)) if sum.turned => sum.terms().last(),
         _ => None,
     });
-    let turned = angles.filter(|angle| angle.turned).filter_map(|angle| angle.terms().last());
     turned.map(|(joint, _)| usize::from(joint) + 1).next()
 }
 

@@ -143,6 +143,7 @@ pub(super) const ROBOT: &[Entry] = &[
     optional("regressor", Shape::Regressor, "Columns of the regressor. standard: ten parameters a link, and those of drives. base: the smallest set. Or names of parameters."),
     optional("inverse_kinematics", Shape::Mapping("inverse_kinematics", INVERSE_KINEMATICS), "The target of inverse kinematics, and the joint whose value the caller gives."),
     optional("tips", Shape::Tips, "End effectors, each with a name, in place of tip, tool, payload, task and inverse_kinematics here."),
+    optional("closes", Shape::List("closure", CLOSURE), "Points that two links share in every posture, where loops of links close; that they do is proved."),
     optional("allow", Shape::Warnings, "Kinds of warnings that this file accepts."),
 ];
 
@@ -249,6 +250,14 @@ pub(super) const TIP: &[Entry] = &[
         Shape::Mapping("inverse_kinematics", INVERSE_KINEMATICS),
         "The target of inverse kinematics, and the joint whose value the caller gives.",
     ),
+];
+/// The keys of a point that two links share.
+pub(super) const CLOSURE: &[Entry] = &[
+    optional("name", Shape::Text, "Name of the pin, for messages."),
+    required("joint", "joint: rod", Shape::Name, "The joint of a link that has the point, or base."),
+    optional("at", Shape::Vector(3, LENGTH), "The point in the frame of that link; its origin if left out."),
+    required("with", "with: forearm", Shape::Name, "The joint of the other link, or base."),
+    optional("there", Shape::Vector(3, LENGTH), "The same point in the frame of the other link; its origin if left out."),
 ];
 pub(super) const INVERSE_KINEMATICS: &[Entry] = &[
     optional("target", Shape::Word(TARGET_WORDS), "The target; the rows of task if left out."),

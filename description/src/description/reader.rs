@@ -1,16 +1,16 @@
 //! Tree of nodes -> [`RobotDescription`]. [`keys`](super::keys) declares the keys and the kinds of their values.
 
 use super::keys::{
-    Entry, ATTACHED, CONVENTIONS, FRICTION, GRAVITY, INERTIA, INVERSE_KINEMATICS, JOINT, JOINT_KINDS, LIMITS, LINK, MOST_POSES,
-    MOTOR, PAYLOAD, POSE, PRODUCTS, REGRESSORS, ROBOT, ROTATIONS, SPRING, STRIBECK, TARGETS, TIP, URDF_JOINT,
+    Entry, ATTACHED, CLOSURE, CONVENTIONS, FRICTION, GRAVITY, INERTIA, INVERSE_KINEMATICS, JOINT, JOINT_KINDS, LIMITS, LINK,
+    MOST_POSES, MOTOR, PAYLOAD, POSE, PRODUCTS, REGRESSORS, ROBOT, ROTATIONS, SPRING, STRIBECK, TARGETS, TIP, URDF_JOINT,
 };
 use super::other_formats::{OTHER_NAMES, OTHER_PLACES};
 use super::units::{UnitKey, KEYS};
 use super::{
-    AttachedDescription, BodyDescription, Convention, FrictionDescription, InertiaDescription, JointDescription,
-    LeadersDescription, LimitsDescription, MotorDescription, NamedUnit, ParameterDescription, PoseDescription, PoseElement,
-    PosturesDescription, RegressorDescription, RobotDescription, RotationDescription, SpringDescription, StribeckDescription,
-    TipDescription, Value, INERTIA_ELEMENTS,
+    AttachedDescription, BodyDescription, ClosureDescription, Convention, FrictionDescription, InertiaDescription,
+    JointDescription, LeadersDescription, LimitsDescription, MotorDescription, NamedUnit, ParameterDescription, PoseDescription,
+    PoseElement, PosturesDescription, RegressorDescription, RobotDescription, RotationDescription, SpringDescription,
+    StribeckDescription, TipDescription, Value, INERTIA_ELEMENTS,
 };
 use crate::diagnostic::{Code, Diagnostics};
 use crate::document::reader::{first_key, optional, Fields, Reader};
@@ -63,6 +63,7 @@ impl Reader<'_> {
                 .and_then(|(key, node)| self.inverse_kinematics(node, key))
                 .unwrap_or_default(),
             tips: fields.get("tips").and_then(|(key, node)| self.tips(node, key, &fields)),
+            closes: fields.get("closes").map_or_else(Vec::new, |(key, node)| self.closes(node, key)),
             allow: fields.get("allow").map_or_else(Vec::new, |(key, node)| self.allow(node, key)),
         }
     }
@@ -375,6 +376,22 @@ impl Reader<'_> {
                 .and_then(|(key, node)| self.inverse_kinematics(node, key))
                 .unwrap_or_default(),
         })
+    }
+
+    fn closes(&mut self, node: &Node, key: Span) -> Vec<ClosureDescription> {
+        let help = "write one `- {joint: rod, at: [0, 0, 1], with: forearm, there: [-0.4, 0, 0]}` per pin";
+        let items = self.list(node, key, "closes", "a list", help).unwrap_or_default();
+        let mut read = |item: &Node| {
+            let span = first_key(item);
+            let fields = self.mapping(item, "a point of `closes`", span, CLOSURE)?;
+            let mut word = |name: &str| fields.get(name).and_then(|(key, node)| self.word(node, key, name));
+            let [joint, with] = ["joint", "with"].map(&mut word);
+            let mut point = |name: &str| fields.get(name).and_then(|(key, node)| self.vector(node, key, name, ["x", "y", "z"]));
+            let [at, there] = ["at", "there"].map(&mut point);
+            let name = fields.get("name").and_then(|(key, node)| self.text(node, key, "name", "a name", "write a few words"));
+            Some(ClosureDescription { name, joint, at, with, there, span })
+        };
+        items.iter().filter_map(&mut read).collect()
     }
 
     fn allow(&mut self, node: &Node, key: Span) -> Vec<Spanned<String>> {

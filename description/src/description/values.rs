@@ -266,6 +266,10 @@ macro_rules! walk {
                     }
                 }
             }
+            for closure in & $($mutable)? description.closes {
+                $three(to, Role::Length, Length, & $($mutable)? closure.at);
+                $three(to, Role::Length, Length, & $($mutable)? closure.there);
+            }
         }
 
         impl RobotDescription {

@@ -46,7 +46,7 @@ pub(super) fn tip(description: &RobotDescription, diagnostics: &mut Diagnostics)
 }
 
 /// The link of the joint that `key` names; `otherwise` is the remedy where no name is near.
-fn carrier(
+pub(super) fn carrier(
     joints: &[JointDescription],
     named: &Spanned<String>,
     key: &str,

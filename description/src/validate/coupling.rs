@@ -22,9 +22,6 @@ use crate::source::Span;
 use crate::suggest::did_you_mean;
 use armgen_algebra::ring::field::computed::ComputedAngles;
 
-/// Most turns of leaders, their factors without signs, of which sines and cosines are taken apart: they are polynomials of this degree. Of more, and
-/// of factors that are no whole numbers, they are those of a computed angle.
-const MOST_TURNS: i64 = 16;
 /// An offset beyond this many radians is a mistake.
 const LARGEST_ANGLE: i64 = 1_000_000;
 
@@ -65,7 +62,7 @@ pub(super) fn resolve(joints: &[JointDescription], context: &mut Context<'_>) ->
             context.report(Code::FollowerEffort, effort.span, message, "not used", help);
         }
     }
-    let coupling = Coupling { coordinates, limits, variables };
+    let coupling = Coupling { coordinates, limits, variables, sums: Vec::new() };
     unrelated(joints, &all, &coupling, context);
     valid.then_some(Some(coupling))
 }
@@ -216,15 +213,7 @@ fn variable(
     }
     sums.retain(|_, factor| factor.sign() != Ordering::Equal);
     let turns = |joint: usize| joints[joint].kind.as_ref().is_some_and(|kind| kind.value == JointKind::Revolute);
-    let (mut turn, mut is_whole) = (None, false);
     if turns(i) {
-        let whole = |(a, factor): (&usize, &Number)| {
-            factor.as_rational().filter(|factor| factor.is_int())?;
-            let size = factor.to_f64().abs();
-            (turns(coordinates[*a]) && size <= MOST_TURNS as f64).then_some(size as i64)
-        };
-        let sizes: Option<Vec<i64>> = sums.iter().map(whole).collect();
-        is_whole = sizes.is_some_and(|sizes| sizes.iter().sum::<i64>() <= MOST_TURNS);
         if (&size(&constant) - &Number::from(LARGEST_ANGLE)).sign() == Ordering::Greater {
             let place = joints[i].offset.as_ref().map_or(joints[i].span, |offset| offset.span);
             let message = format!("the variable of joint {} begins at {} rad", call(i, &joints[i]), text_of(&constant));
@@ -232,10 +221,11 @@ fn variable(
             valid = false;
         } else {
             let angle = Angle::new(constant.clone());
-            turn = Some([angle.sin(), angle.cos()]);
+            let turn = [angle.sin(), angle.cos()];
+            return (JointVariable::of_angle(sums, constant, turn, |a| turns(coordinates[a])), valid);
         }
     }
-    (JointVariable { factors: sums.into_iter().collect(), offset: constant, turn, is_whole }, valid)
+    (JointVariable { factors: sums.into_iter().collect(), offset: constant, turn: None, is_whole: false }, valid)
 }
 
 fn size(number: &Number) -> Number {

@@ -2,7 +2,9 @@
 
 pub use crate::description::Role;
 use crate::description::{RegressorDescription, RobotDescription};
+use crate::exact::Polynomial;
 use crate::kinds::TaskRow;
+use crate::manipulator::LinkId;
 use crate::source::{Span, Spanned};
 
 /// Places of an arm's parts, in the order of the [`Manipulator`](crate::manipulator::Manipulator).
@@ -24,6 +26,19 @@ pub struct Places {
     pub parameters: Vec<Span>,
     /// Occurrences of the names in expressions, abbreviations included, by [`ParameterId`](crate::kinds::ParameterId).
     pub uses: Vec<Vec<Occurrence>>,
+    /// Points that two links are to share in every posture.
+    pub closures: Vec<Closure>,
+}
+
+/// A point that two links are to share in every posture.
+#[derive(Clone, Debug)]
+pub struct Closure {
+    /// Its name, or those of the two joints.
+    pub name: String,
+    /// For both links the link, `None` for the base, and the point in its frame.
+    pub ends: [(Option<LinkId>, [Polynomial; 3]); 2],
+    /// Where the two links are named.
+    pub spans: [Span; 2],
 }
 
 /// Places of a joint's parts.
@@ -54,7 +69,7 @@ fn task(task: Option<&Spanned<Vec<Spanned<TaskRow>>>>) -> Option<Span> {
 }
 
 /// The places of a valid description, whose names that stay symbols stand and are used at `symbols`.
-pub(super) fn gather(description: &RobotDescription, symbols: Vec<(Span, Vec<Occurrence>)>) -> Places {
+pub(super) fn gather(description: &RobotDescription, symbols: Vec<(Span, Vec<Occurrence>)>, closures: Vec<Closure>) -> Places {
     let joints = description.joints.iter().flat_map(|joints| &joints.value);
     let (parameters, uses) = symbols.into_iter().unzip();
     Places {
@@ -82,5 +97,6 @@ pub(super) fn gather(description: &RobotDescription, symbols: Vec<(Span, Vec<Occ
         },
         parameters,
         uses,
+        closures,
     }
 }

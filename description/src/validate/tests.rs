@@ -594,3 +594,30 @@ fn angles_that_are_no_whole_turns_are_computed() {
         assert_eq!(diagnostics.iter().any(|fault| fault.code == Code::UnrelatedFactor), is_warned, "{follows}");
     }
 }
+
+/// Sums of the variables of joints about parallel axes, of which one is a computed angle.
+#[test]
+fn sums_about_parallel_axes_are_found() {
+    let joint = |name: &str, axis: &str, more: &str| {
+        format!("  - {{name: {name}, type: revolute, origin: {{xyz: [0.1, 0, 0]}}, axis: {axis}, {more}link: {{mass: 1}}}}\n")
+    };
+    let joints = [
+        joint("a", "[0, 0, 1]", ""),
+        joint("b", "[0, 1, 0]", ""),
+        joint("c", "[0, 1, 0]", "follows: {b: 2/3}, "),
+        joint("d", "[0, -1, 0]", "follows: {b: 1/3}, offset: 0.1, "),
+    ];
+    let text = format!("name: arm\nconvention: urdf\ngravity: [0, 0, -9.81]\njoints:\n{}", joints.concat());
+    let (arm, diagnostics) = read(&Source::new("robot.yaml", text));
+    let coupling = arm.and_then(|(arm, _)| arm.coupling).unwrap_or_else(|| panic!("{diagnostics:?}"));
+    let found = coupling.sums.iter().map(|sum| {
+        let factors: Vec<String> = sum.variable.factors.iter().map(|(_, factor)| factor.to_string()).collect();
+        (sum.joints.plus, sum.joints.minus, factors.join(", "), sum.variable.offset.to_string(), sum.variable.is_whole)
+    });
+    let expected =
+        [(0b110, 0, "5/3", "0", false), (0b1000, 0b100, "-1/3", "1/10", false), (0b1000, 0b110, "-4/3", "1/10", false)];
+    assert_eq!(
+        found.collect::<Vec<_>>(),
+        expected.map(|(a, b, factor, offset, whole)| (a, b, factor.to_owned(), offset.to_owned(), whole))
+    );
+}

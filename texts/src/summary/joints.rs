@@ -2,12 +2,12 @@
 
 use armgen_codegen::derive::parameters::{denavit_hartenberg, nominal};
 use armgen_codegen::description::{
-    list_text, Convention, JointDescription, PoseDescription, RobotDescription, RotationDescription,
+    list_text, ClosureDescription, Convention, JointDescription, PoseDescription, RobotDescription, RotationDescription,
 };
 use armgen_codegen::exact::{Number, Polynomial};
 use armgen_codegen::kinds::JointKind;
 use armgen_codegen::manipulator::{Coordinate, Joint, JointVariable, Limits, Manipulator};
-use armgen_codegen::source::Source;
+use armgen_codegen::source::{Source, Spanned};
 
 use super::{decimal, digits};
 use armgen_terminal::table::Align::{Left, Right};
@@ -115,8 +115,7 @@ pub(super) fn couplings(manipulator: &Manipulator) -> Vec<String> {
     let coordinate = |a: usize| &manipulator.joints[coupling.coordinates[a]].name;
     let sentence = |(i, variable): (usize, &JointVariable)| {
         let own = &manipulator.joints[i].name;
-        let is_plain = matches!(variable.factors.as_slice(), [(a, factor)] if coupling.coordinates[*a] == i && factor.is_one());
-        if is_plain && variable.offset.is_zero() {
+        if coupling.is_plain(i) {
             return None;
         }
         let mut terms: Vec<String> = variable.factors.iter().map(|(a, factor)| term(factor, coordinate(*a))).collect();
@@ -128,6 +127,16 @@ pub(super) fn couplings(manipulator: &Manipulator) -> Vec<String> {
         Some(format!("{of}{own} = {}", sum(&terms)))
     };
     coupling.variables.iter().enumerate().filter_map(sentence).collect()
+}
+
+/// The points that two links share, a sentence each: a valid description has no others.
+pub(super) fn closures(description: &RobotDescription) -> Vec<String> {
+    let word = |given: &Option<Spanned<String>>| given.as_ref().map_or("", |given| given.value.as_str()).to_owned();
+    let sentence = |closure: &ClosureDescription| {
+        let name = closure.name.as_ref().map_or(String::new(), |name| format!("{}: ", name.value));
+        format!("{name}the points of {} and {} are one in every posture", word(&closure.joint), word(&closure.with))
+    };
+    description.closes.iter().map(sentence).collect()
 }
 
 /// A factor times a variable.
@@ -143,18 +152,31 @@ fn sum(terms: &[String]) -> String {
     terms.join(" + ").replace("+ -", "- ")
 }
 
-/// The motors that ride elsewhere than on the link before their joint, or turn with several joints, a sentence each.
+/// The motors that ride elsewhere than on the link before their joint, turn with several joints, or drive a coupled joint, a sentence each. Where
+/// joints are coupled, their rates are those of coordinates.
 pub(super) fn motors(manipulator: &Manipulator) -> Vec<String> {
     let name = |joint: usize| manipulator.joints[joint].name.as_str();
-    let sentence = |joint: &Joint| {
-        let motor = joint.motor.as_ref().filter(|_| joint.plain_motor().is_none())?;
+    let in_coordinates = manipulator.motor_rates();
+    let coordinates = manipulator.coordinates();
+    let sentence = |(i, joint): (usize, &Joint)| {
+        let coupled = manipulator.coupling.as_ref().is_some_and(|coupling| !coupling.is_plain(i));
+        let motor = joint.motor.as_ref().filter(|_| coupled || joint.plain_motor().is_none())?;
         let on = motor.carrier.map_or("the base".to_owned(), |link| format!("link {}", name(link.index())));
-        let own = term(&nominal(manipulator, &motor.ratio), &joint.name);
-        let others = motor.coupling.iter().map(|(other, factor)| term(factor, name(*other)));
-        let terms: Vec<String> = [own].into_iter().chain(others).collect();
-        Some(format!("that of {} rides on {on} and turns by {} beside it", joint.name, sum(&terms)))
+        let rates = in_coordinates.iter().find(|(of, _)| manipulator.coupling.is_some() && of.name == joint.name);
+        let terms: Vec<String> = match rates {
+            Some((_, rates)) => {
+                let of = rates.iter().zip(&coordinates).filter(|(rate, _)| !rate.is_zero());
+                of.map(|(rate, coordinate)| term(rate, &coordinate.joint.name)).collect()
+            }
+            None => {
+                let own = term(&nominal(manipulator, &motor.ratio), &joint.name);
+                [own].into_iter().chain(motor.coupling.iter().map(|(other, factor)| term(factor, name(*other)))).collect()
+            }
+        };
+        let turns = if terms.is_empty() { "0".to_owned() } else { sum(&terms) };
+        Some(format!("that of {} rides on {on} and turns by {turns} beside it", joint.name))
     };
-    manipulator.joints.iter().filter_map(sentence).collect()
+    manipulator.joints.iter().enumerate().filter_map(sentence).collect()
 }
 
 /// The limits of the joints, angles also in degrees, and where joints are coupled those of coordinates; `None` without limits.

@@ -4,12 +4,13 @@
 //! Then sin(2/3 p) and sin(1/3 p) satisfy there what they satisfy over the reals. Factors with roots or pi are related to their multiples
 //! alone, and so are factors with more than 2^40 units.
 //!
-//! An angle in the text of a module is one of these where its factors and its constant have the exact values of the description's.
+//! An angle in the text of a module is one of these, or a sum of joints about parallel axes, where its factors and its constant have the exact
+//! values that follow from the description. A sum has the sine that the addition theorem gives it.
 
 use std::collections::BTreeMap;
 
 use armgen_description::exact::{Monomial, Number, Rational};
-use armgen_description::manipulator::Manipulator;
+use armgen_description::manipulator::{Coupling, JointSum, JointVariable, Manipulator};
 use dashu_base::{Gcd, Signed, UnsignedAbs};
 use dashu_int::UBig;
 
@@ -35,8 +36,17 @@ struct Sum {
     factors: Vec<(usize, Formula, bool)>,
     /// The size of the constant, and whether it is below 0.
     offset: (Formula, bool),
-    /// Its sine and cosine.
-    turn: [Formula; 2],
+    /// What its sine and cosine follow from.
+    parts: Vec<Part>,
+}
+
+/// A part of a sum.
+#[derive(Clone, Debug)]
+enum Part {
+    /// An angle of a coordinate or of a sum before, so many times.
+    Angle(usize, u64, bool),
+    /// A constant angle, of which there are sine and cosine, and whether it is taken away.
+    Constant([Formula; 2], bool),
 }
 
 /// A whole number of units, and whether they are taken away.
@@ -48,7 +58,7 @@ pub struct Angles {
     /// Number of coordinates.
     coordinates: usize,
     sums: Vec<Sum>,
-    /// Units of each coordinate, and of each sum without its constant. A coordinate's first unit has its number.
+    /// Units of each coordinate, and of the sum of each joint without its constant. A coordinate's first unit has its number.
     units: Vec<Units>,
     /// Number of units.
     count: usize,
@@ -78,16 +88,29 @@ impl Angles {
         let computed = manipulator.coupling.as_ref().map_or_else(Vec::new, |coupling| coupling.computed());
         let size =
             |number: &Number| (formula(&if number.is_negative() { -number } else { number.clone() }), number.is_negative());
-        let sum = |factors: &[(u16, Number)], offset: &Number, turn: &[Number; 2]| {
-            let factor = |(a, factor): &(u16, Number)| {
-                let (size, minus) = size(factor);
-                (usize::from(*a), size, minus)
+        let sum = |factors: BTreeMap<usize, Number>, offset: &Number, parts| {
+            let factor = |(a, factor): (usize, Number)| {
+                let (size, minus) = size(&factor);
+                (a, size, minus)
             };
-            let mut factors: Vec<_> = factors.iter().map(factor).collect();
-            factors.sort_unstable_by_key(|(a, ..)| *a);
-            Sum { factors, offset: size(offset), turn: turn.each_ref().map(formula) }
+            Sum { factors: factors.into_iter().map(factor).collect(), offset: size(offset), parts }
         };
-        let sums = computed.iter().map(|angle| sum(&angle.factors, &angle.offset, &angle.turn)).collect();
+        let mut sums: Vec<Sum> = Vec::new();
+        for angle in &computed {
+            let factors = angle.factors.iter().map(|(a, factor)| (usize::from(*a), factor.clone()));
+            let turn = Part::Constant(angle.turn.each_ref().map(formula), false);
+            sums.push(sum(factors.collect(), &angle.offset, vec![turn]));
+        }
+        let place = |variable: &JointVariable| {
+            let (angle, opposite) = variable.computed()?;
+            Some((coordinates + computed.iter().position(|of| *of == angle)?, opposite))
+        };
+        if let Some(coupling) = &manipulator.coupling {
+            for joints in coupling.sums.iter().filter(|sum| !sum.variable.is_whole) {
+                let (factors, offset, parts) = added(coupling, joints, place);
+                sums.push(sum(factors, &offset, parts));
+            }
+        }
         // By coordinate and irrational part: what angles have of it, the coordinate's own angle first.
         let mut shares: BTreeMap<(usize, Monomial), Vec<(usize, Rational)>> = BTreeMap::new();
         for a in 0..coordinates {
@@ -143,13 +166,24 @@ impl Angles {
             };
             units.iter().map(part).reduce(|sum, part| plus(&sum, &part)).unwrap_or_else(nothing)
         };
-        let turned = |(units, sum): (&Units, &Sum)| {
-            let [sine, cosine] = sum.turn.each_ref().map(|number| arithmetic.coordinate(number));
-            // A constant that divides by 0 refuses the arm elsewhere.
-            plus(&point(units), &(sine.zip(cosine)).unwrap_or_else(nothing))
-        };
-        let (own, computed) = self.units.split_at(self.coordinates);
-        own.iter().map(point).chain(computed.iter().zip(&self.sums).map(turned)).collect()
+        let mut all: Vec<(K::Element, K::Element)> = self.units[..self.coordinates].iter().map(point).collect();
+        for (k, sum) in self.sums.iter().enumerate() {
+            let part = |part: &Part| {
+                let (circle, minus) = match part {
+                    Part::Angle(index, count, minus) => (multiple(&all[*index], *count), minus),
+                    Part::Constant(turn, minus) => {
+                        let [sine, cosine] = turn.each_ref().map(|number| arithmetic.coordinate(number));
+                        // A constant that divides by 0 refuses the arm elsewhere.
+                        (sine.zip(cosine).unwrap_or_else(nothing), minus)
+                    }
+                };
+                (if *minus { circle.0.negated() } else { circle.0 }, circle.1)
+            };
+            let own = self.units.get(self.coordinates + k).map_or_else(nothing, point);
+            let circle = sum.parts.iter().map(part).fold(own, |sum, part| plus(&sum, &part));
+            all.push(circle);
+        }
+        all
     }
 
     /// The values of computed angles at coordinates `q`; `None` where a constant has no value.
@@ -187,6 +221,41 @@ impl Angles {
         }
         Ok(())
     }
+}
+
+/// The sum of joints about parallel axes: its factors by coordinate, its constant, and the angles that it adds. Its first factor is positive, as
+/// those of computed angles are. `computed` has the place of a joint's computed angle, and whether the joint has the opposite.
+fn added(
+    coupling: &Coupling,
+    joints: &JointSum,
+    computed: impl Fn(&JointVariable) -> Option<(usize, bool)>,
+) -> (BTreeMap<usize, Number>, Number, Vec<Part>) {
+    let (mut factors, mut offset): (BTreeMap<usize, Number>, Number) = (BTreeMap::new(), Number::zero());
+    let terms: Vec<(&JointVariable, bool)> =
+        joints.joints.terms().map(|(joint, minus)| (&coupling.variables[usize::from(joint)], minus)).collect();
+    let signed = |number: &Number, minus: bool| if minus { -number } else { number.clone() };
+    for &(variable, minus) in &terms {
+        for (a, factor) in &variable.factors {
+            let sum = factors.entry(*a).or_insert_with(Number::zero);
+            *sum = sum.plus(&signed(factor, minus));
+        }
+        offset = offset.plus(&signed(&variable.offset, minus));
+    }
+    factors.retain(|_, factor| !factor.is_zero());
+    let flip = factors.values().next().is_some_and(Number::is_negative);
+    factors.values_mut().for_each(|factor| *factor = signed(factor, flip));
+    let mut parts = Vec::new();
+    for (variable, minus) in terms {
+        let minus = minus != flip;
+        if let Some((place, opposite)) = computed(variable) {
+            parts.push(Part::Angle(place, 1, minus != opposite));
+            continue;
+        }
+        let whole = |(a, factor): &(usize, Number)| Part::Angle(*a, factor.to_f64().abs() as u64, minus != factor.is_negative());
+        parts.extend(variable.factors.iter().map(whole));
+        parts.extend(variable.turn.iter().map(|turn| Part::Constant(turn.each_ref().map(formula), minus)));
+    }
+    (factors, signed(&offset, flip), parts)
 }
 
 impl Sum {

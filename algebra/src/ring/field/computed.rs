@@ -73,6 +73,11 @@ impl ComputedAngles {
         units(coordinates, angles, MOST_UNITS).1.into_iter().map(|index| index - usize::from(coordinates)).collect()
     }
 
+    /// All of them with their indices.
+    pub fn all(&self) -> impl Iterator<Item = (u16, &ComputedAngle)> {
+        (self.first..).zip(&self.angles)
+    }
+
     /// The angle of an index.
     pub fn get(&self, index: u16) -> Option<&ComputedAngle> {
         self.angles.get(usize::from(index.checked_sub(self.first)?))

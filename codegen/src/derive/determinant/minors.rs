@@ -17,6 +17,7 @@ use crate::derive::arm::Arm;
 use crate::derive::parameters::View;
 use crate::derive::quantities::kinematics::geometric_jacobian;
 use crate::exact::{Number, Rational};
+use crate::ring::field::computed::ComputedAngles;
 use crate::ring::matrix::{Vector, IDENTITY, ZERO};
 use crate::ring::normal_form::{Harmonic, NormalForm, Powers};
 use crate::ring::{ExprId, Pool, Symbol};
@@ -93,9 +94,6 @@ pub fn minors(model: &Model, view: View<'_>) -> Result<Minors, NoMinors> {
     let jacobian = if manipulator.task.len() == 6 { twists(&mut pool, &arm) } else { geometric_jacobian(&mut pool, &arm) };
     let (mut pool, jacobian) = in_coordinates(pool, &arm, jacobian);
     let task: Vec<Vec<ExprId>> = manipulator.task.iter().map(|row| jacobian[row.index()].clone()).collect();
-    if pool.field().computed().is_some() {
-        return Err(NoMinors::TooLong(Vec::new()));
-    }
     let all = without_each(&mut pool, &task);
     let (mut pool, task) = without_fixed(&mut pool, &all, &task);
     let values = without_each(&mut pool, &task);
@@ -112,7 +110,8 @@ pub fn minors(model: &Model, view: View<'_>) -> Result<Minors, NoMinors> {
     if !reduced || total(&mut forms.iter().map(NormalForm::size)) > FACTORED_TERMS {
         return Err(NoMinors::TooLong(Vec::new()));
     }
-    let (common, left) = taken_apart(model, forms);
+    let angles = pool.field().computed().map(|computed| &**computed);
+    let (common, left) = taken_apart(model, angles, forms);
     if total(&mut left.iter().flat_map(|product| &product.factors).map(NormalForm::size)) > LEFT_TERMS {
         return Err(NoMinors::TooLong(common));
     }
@@ -169,8 +168,8 @@ fn twists(pool: &mut Pool, arm: &Arm) -> Vec<Vec<ExprId>> {
 }
 
 /// The factors that some forms share, and each form divided by them.
-fn taken_apart(model: &Model, forms: Vec<NormalForm>) -> (Vec<Factor>, Vec<Product>) {
-    let (found, mut rest) = contents(model, forms);
+fn taken_apart(model: &Model, angles: Option<&ComputedAngles>, forms: Vec<NormalForm>) -> (Vec<Factor>, Vec<Product>) {
+    let (found, mut rest) = contents(model, angles, forms);
     let mut common: Vec<Factor> = found.into_iter().map(|(form, zeros)| Factor { form, zeros }).collect();
     let shared = shared_powers(&rest);
     if !shared.is_empty() {
@@ -182,7 +181,7 @@ fn taken_apart(model: &Model, forms: Vec<NormalForm>) -> (Vec<Factor>, Vec<Produ
         .iter()
         .map(|form| {
             let mut product = Product::of(Number::one());
-            for factor in factors(model, form) {
+            for factor in factors(model, angles, form) {
                 match constant(&factor.form) {
                     Some(c) => product.coefficient = product.coefficient.times(c),
                     None => {

@@ -4,8 +4,10 @@ use super::slips::{in_text, written_as};
 use super::{is_in_degrees, number, short, written, Arm, FASTEST_SLIDE, FASTEST_TURN, LEAST_RATIO, REFLECTED, SMALL_REACH};
 use crate::description::{JointDescription, Value};
 use crate::diagnostic::Code;
+use crate::document::excerpt;
 use crate::exact::Rational;
 use crate::kinds::JointKind;
+use crate::validate::parents::BASE;
 use crate::validate::Context;
 
 /// m/s²: what holds an arm is compared with its weight on earth, wherever it is.
@@ -112,12 +114,17 @@ impl Arm<'_> {
         let Some(position) = &motor.position else { return };
         let far = position.value.iter().map(|value| number(value, context).powi(2)).sum::<f64>().sqrt();
         if self.reach > SMALL_REACH && mass > 0.0 && far > self.reach + super::HOUSING {
+            let carrier = match &motor.on {
+                None => "the link before it".to_owned(),
+                Some(on) if on.value == BASE => "the base".to_owned(),
+                Some(on) => format!("the link of joint `{}`", excerpt(&on.value)),
+            };
             let message = format!(
-                "the motor of joint {called} sits {} m from the frame of the link before it, and the arm is {} m long",
+                "the motor of joint {called} sits {} m from the frame of {carrier}, and the arm is {} m long",
                 short(far),
                 short(self.reach)
             );
-            let help = "lengths are in m, from the previous link's frame; see whether this is in mm";
+            let help = format!("lengths are in m, from the frame of {carrier}; see whether this is in mm");
             context.report(Code::ImplausibleCom, position.span, message, "in mm?", help);
         }
     }
