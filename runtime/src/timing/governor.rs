@@ -312,8 +312,9 @@ fn candidates<T: RealField + Copy, const N: usize>(
     let (zero, half) = (T::zero(), lit::<T>(0.5));
     let least = law.x0.min(law.middle()).min(law.x2).max(zero);
     let most = law.x0.max(law.middle()).max(law.x2);
-    // Without friction that is no line nothing depends on the window.
-    let windows = if timing.friction.iter().any(JointFriction::is_curved) { WINDOWS.len() } else { 1 };
+    // Without friction that is no line nothing depends on the window, and all rows have the same forms.
+    let curved = timing.friction.iter().any(JointFriction::is_curved);
+    let windows = if curved { WINDOWS.len() } else { 1 };
     let mut rows = [None; ROWS];
     let (first, others) = rows.split_at_mut(1);
     first.fill(Some(Rows { k: law.k, assumed }));
@@ -322,7 +323,7 @@ fn candidates<T: RealField + Copy, const N: usize>(
         let share = (from + to) * half;
         let top = if to < T::one() { most * to } else { assumed.x[1] };
         let touch = (law.x(half) * share).max(top * lit(1e-9)).max(lit(1e-30));
-        let assumed = Assumed { x: [least * from, top], touch, u: assumed.u };
+        let assumed = if curved { Assumed { x: [least * from, top], touch, u: assumed.u } } else { assumed };
         for (to, k) in of.iter_mut().zip([Some(zero), Some(law.k * share), scale.map(|scale| law.k * scale)]) {
             *to = k.map(|k| Rows { k, assumed });
         }

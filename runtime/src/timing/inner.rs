@@ -21,16 +21,22 @@ struct HalfPlane<T> {
     most: T,
 }
 
-/// The half-planes of a row for k; `None` where its limit is infinite or cannot bind.
+impl<T: RealField + Copy> HalfPlane<T> {
+    /// Of a form at most 0.
+    fn of(form: &Form<T>, k: T) -> Self {
+        Self { x0: form.x0, x2: form.x2, most: -form.rest - form.k * k }
+    }
+}
+
+/// The forms of a row, at most 0 on the segment; `None` where its limit is infinite or cannot bind.
 fn of_row<T: RealField + Copy, const N: usize>(
     segment: &Segment<T, N>,
     index: usize,
     limits: &Limits<T, N>,
     friction: &[JointFriction<T>; N],
-    k: T,
     assumed: &Assumed<T>,
     window: &Window<T>,
-) -> Option<[HalfPlane<T>; 5]> {
+) -> Option<[Form<T>; 5]> {
     let most = assumed.x[1];
     let row = segment.row(index, limits, friction, false)?;
     let slack = row.bound.abs() * lit(ROUNDING) + row.m_error * assumed.u + row.v_error * most.sqrt() + row.d_error;
@@ -44,11 +50,7 @@ fn of_row<T: RealField + Copy, const N: usize>(
         row = row.straight(window, true);
     }
     let bound = row.bound - slack;
-    Some(row.forms(segment.length).map(|form: Form<T>| HalfPlane {
-        x0: form.x0,
-        x2: form.x2,
-        most: bound - form.rest - form.k * k,
-    }))
+    Some(row.forms(segment.length).map(|form| Form { rest: form.rest - bound, ..form }))
 }
 
 /// The half-planes of the middle coefficient, of u and of the interval at the end, for k.
@@ -89,7 +91,8 @@ impl<T: RealField + Copy, const N: usize> HalfPlanes<T, N> {
         let mut rows = [[None; 5]; N];
         let places = rows.iter_mut().flatten();
         for (index, to) in places.enumerate() {
-            *to = of_row(segment, index, limits, friction, k, assumed, &window);
+            let forms = of_row(segment, index, limits, friction, assumed, &window);
+            *to = forms.map(|forms| forms.map(|form| HalfPlane::of(&form, k)));
         }
         Self { rows, others: others(segment.length, k, assumed, next) }
     }
@@ -171,11 +174,17 @@ pub(super) struct Trial<'a, T, const N: usize> {
     x0: T,
     /// Rows of the lower and the upper end of the last interval.
     first: [Option<usize>; 2],
+    /// Of the last assumption the forms of the rows that were needed: no k enters.
+    assumed: Assumed<T>,
+    window: Window<T>,
+    forms: [[Option<Option<[Form<T>; 5]>>; 5]; N],
 }
 
 impl<'a, T: RealField + Copy, const N: usize> Trial<'a, T, N> {
     pub(super) fn new(segment: &'a Segment<T, N>, limits: &'a Limits<T, N>, friction: &'a [JointFriction<T>; N], x0: T) -> Self {
-        Self { segment, limits, friction, x0, first: [None; 2] }
+        let assumed = segment.inner.assumed;
+        let window = Window::new(assumed.x, assumed.touch);
+        Self { segment, limits, friction, x0, first: [None; 2], assumed, window, forms: [[None; 5]; N] }
     }
 
     /// The X2 that keep all rows, within rounding; `None` where there is no such X2, or where an interval around them does not serve.
@@ -201,11 +210,17 @@ impl<'a, T: RealField + Copy, const N: usize> Trial<'a, T, N> {
         if !is_left(&found) {
             return None;
         }
-        let window = Window::new(assumed.x, assumed.touch);
+        if self.assumed != *assumed {
+            (self.assumed, self.window) = (*assumed, Window::new(assumed.x, assumed.touch));
+            self.forms = [[None; 5]; N];
+        }
         for index in self.first.into_iter().flatten().chain(0..Segment::<T, N>::ROWS) {
-            let Some(planes) = of_row(self.segment, index, self.limits, self.friction, k, assumed, &window) else { continue };
-            for plane in &planes {
-                if let Some(first) = found.cut(plane, x0).and_then(|end| self.first.get_mut(end)) {
+            let Some(place) = self.forms.get_mut(index / 5).and_then(|of| of.get_mut(index % 5)) else { continue };
+            let new = || of_row(self.segment, index, self.limits, self.friction, assumed, &self.window);
+            let Some(forms) = place.get_or_insert_with(new) else { continue };
+            for form in forms {
+                let plane = HalfPlane::of(form, k);
+                if let Some(first) = found.cut(&plane, x0).and_then(|end| self.first.get_mut(end)) {
                     *first = Some(index);
                 }
             }

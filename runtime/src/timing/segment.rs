@@ -99,7 +99,7 @@ impl<T: RealField + Copy> Bound<T> {
 }
 
 /// What the rows of a segment assume of the law on it.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Assumed<T> {
     /// X0, X1 and X2 lie in this interval.
     pub x: [T; 2],
