@@ -46,7 +46,10 @@ fn follow(name: &str, tools: &[(&str, &str)]) {
     for (file, language, text) in blocks(&page) {
         match (file, language.as_str()) {
             // The folder of tests is within this workspace.
-            (Some(file), "toml") => fs::write(folder.join(file), text + "\n[workspace]\n").expect("a file"),
+            (Some(file), "toml") => {
+                let text = text.replace("../armgen/", &format!("{}/", root.display()));
+                fs::write(folder.join(file), text + "\n[workspace]\n").expect("a file");
+            }
             (Some(file), _) => fs::write(folder.join(file), text).expect("a file"),
             (None, "sh") => {
                 let output =
@@ -87,6 +90,12 @@ fn five_minutes_in_a_browser() {
 #[ignore = "wide"]
 fn five_minutes_in_octave() {
     follow("start/matlab", &[("octave-cli", "octave")]);
+}
+
+#[test]
+#[ignore = "wide"]
+fn from_a_urdf_to_hand_guiding() {
+    follow("hand-guiding", &[("cc", "gcc")]);
 }
 
 #[test]

@@ -114,19 +114,6 @@ const FREE: f64 = f64::INFINITY;
 fn table<const N: usize>(
     name: &str,
     chain: &Chain<N>,
-    bounds: ([f64; N], [f64; N]),
-    acceleration: [f64; N],
-    range: [f64; N],
-    paths: u64,
-) {
-    table_within(1000, name, chain, bounds, acceleration, range, paths);
-}
-
-/// The same with so many segments at most.
-fn table_within<const N: usize>(
-    segments: usize,
-    name: &str,
-    chain: &Chain<N>,
     (velocity, effort): ([f64; N], [f64; N]),
     acceleration: [f64; N],
     range: [f64; N],
@@ -141,7 +128,7 @@ fn table_within<const N: usize>(
     let (mut gaps, mut shares, mut counts) = (Vec::new(), 0.0f64, Vec::new());
     for seed in 0..paths {
         let path = random_path(&mut random(seed + 1), range);
-        with_timing(chain, &path, &limits, Ends { hold: false, ..Ends::at_rest() }, 1e-3, segments, |timing| {
+        with_timing(chain, &path, &limits, Ends { hold: false, ..Ends::at_rest() }, 1e-3, 1000, |timing| {
             let timing = timing.unwrap_or_else(|error| panic!("{name}, path {seed}: {error}"));
             gaps.push(timing.gap());
             counts.push(timing.segments());
@@ -177,13 +164,13 @@ fn few_random_paths_are_timed_to_a_thousandth() {
 fn random_paths_with_curved_friction_are_timed_to_a_thousandth() {
     let of_panda = [2.5, 1.7, 2.5, 1.5, 2.5, 1.8, 2.5];
     let scara = chain::scara().with_curved_friction(SCARA_LIMITS, 0.2, 0.1);
-    table_within(1500, "scara", &scara, SCARA_LIMITS, [FREE; 4], [2.5, 2.5, 0.3, 3.0], 100);
+    table("scara", &scara, SCARA_LIMITS, [FREE; 4], [2.5, 2.5, 0.3, 3.0], 100);
     let ur5 = chain::ur5().with_curved_friction(UR5_LIMITS, 0.2, 0.1);
-    table_within(1500, "ur5", &ur5, UR5_LIMITS, [FREE; 6], [3.0; 6], 100);
+    table("ur5", &ur5, UR5_LIMITS, [FREE; 6], [3.0; 6], 100);
     let negative = chain::ur5().with_curved_friction(UR5_LIMITS, -0.05, 0.1);
-    table_within(1500, "ur5, negative", &negative, UR5_LIMITS, [FREE; 6], [3.0; 6], 50);
+    table("ur5, negative", &negative, UR5_LIMITS, [FREE; 6], [3.0; 6], 50);
     let panda = chain::panda().with_curved_friction(PANDA_LIMITS, 0.2, 0.1);
-    table_within(1500, "panda", &panda, PANDA_LIMITS, [FREE; 7], of_panda, 100);
+    table("panda", &panda, PANDA_LIMITS, [FREE; 7], of_panda, 100);
 }
 
 #[test]

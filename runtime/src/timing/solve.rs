@@ -399,7 +399,8 @@ impl<T: RealField + Copy, const N: usize> Solver<'_, T, N> {
         let gap = |segment: &Segment<T, N>| segment.inner.law.duration() - lower(segment);
         for _ in 0..64 {
             let marked = segments.iter().take(count).filter(|s| gap(s) > threshold).count();
-            if marked <= room {
+            // Half of the room is left for later rounds: their halves are where the gap stays, as at rest.
+            if 2 * marked <= room + 1 {
                 break;
             }
             threshold *= lit(2.0);
