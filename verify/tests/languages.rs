@@ -381,3 +381,27 @@ fn functions_of_several_end_effectors_have_the_bits_of_rust() {
         run::check_with("two_arms", &source, &options, 100, run::Effort::Short);
     }
 }
+
+/// Joints that follow others by no whole numbers: the argument of a sine is a sum that the function computes. Beyond the range of the module's own
+/// sines, which a large factor leaves sooner, each language has those of its library.
+#[test]
+#[ignore = "wide"]
+fn computed_angles_have_the_bits_of_rust() {
+    let robots = [
+        ("screw", include_str!("../../tests/data/trees/screw.yaml")),
+        ("finger", include_str!("../../tests/data/trees/finger.yaml")),
+    ];
+    for (name, text) in robots {
+        let source = Source::new("robot.yaml", text);
+        for scalar in [Scalar::F64, Scalar::F32] {
+            for trig in [Trig::Fast, Trig::Std] {
+                #[allow(clippy::needless_update)]
+                let options = Options { scalar, trig, ..Options::default() };
+                check_same(name, &common::generate_with(&source, &options), scalar);
+            }
+            #[allow(clippy::needless_update)]
+            let options = Options { scalar, trig: Trig::Fast, ..Options::default() };
+            run::check_with(name, &source, &options, 200, run::Effort::Short);
+        }
+    }
+}

@@ -410,7 +410,8 @@ impl Arm {
         (into, found)
     }
 
-    /// For each coordinate the one before it whose axis is parallel to its own, and whether it points the other way.
+    /// For each coordinate the one before it whose axis is parallel to its own, and whether it points the other way. So are two coordinates of which a
+    /// joint has the sum or the difference, wherever their axes are.
     pub(super) fn parallel_coordinates(&self) -> Vec<Option<(u16, bool)>> {
         let parallel = self.parallel_axes();
         let Some(coupled) = &self.coupling else { return parallel };
@@ -419,7 +420,11 @@ impl Arm {
             let place = coupled.coordinates().iter().position(|&of| of == usize::from(before))?;
             coupled.has_one_coordinate(usize::from(before)).then_some((place as u16, opposite))
         };
-        coupled.coordinates().iter().map(of).collect()
+        let mut all: Vec<Option<(u16, bool)>> = coupled.coordinates().iter().map(of).collect();
+        for (first, second, opposite) in coupled.pairs() {
+            all[second].get_or_insert((first as u16, opposite));
+        }
+        all
     }
 
     /// A body in joint frame i with mass, first and second moment along z only, in the parent's joint frame: the same for every joint angle.

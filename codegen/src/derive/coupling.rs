@@ -87,6 +87,17 @@ impl Coupled {
         self.rows.iter().map(|row| of_joint(pool, row)).collect()
     }
 
+    /// Coordinates whose sum or difference is the variable of a joint that turns, and whether it is the difference.
+    pub(super) fn pairs(&self) -> Vec<(usize, usize, bool)> {
+        let of_joint = |variable: &JointVariable| {
+            let sum = as_sum(&[(variable, false)])?;
+            let [(first, plus), (second, minus)] = sum.terms().collect::<Vec<_>>().try_into().ok()?;
+            let (low, high) = (first.min(second), first.max(second));
+            Some((usize::from(low), usize::from(high), plus != minus))
+        };
+        self.coupling.variables.iter().filter(|variable| variable.turn.is_some()).filter_map(of_joint).collect()
+    }
+
     /// Whether a joint moves with one coordinate.
     pub(super) fn has_one_coordinate(&self, joint: usize) -> bool {
         self.rows[joint].len() == 1
