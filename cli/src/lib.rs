@@ -314,9 +314,12 @@ Exit codes: 0 done, 1 the description, the options or a log is faulty, or parame
         /// Leave faulty rows out, with a warning
         #[arg(long)]
         skip_bad: bool,
-        /// Lower the bias that noise of positions makes, by the reference of the drives, columns `qr_JOINT`; dry friction keeps a part
+        /// Lower the bias that noise of positions makes, by the reference of the drives, columns `qr_JOINT`
         #[arg(long)]
         instruments: bool,
+        /// Joint that is locked in all logs: its friction, and what only its motion shows, stay; may be given several times
+        #[arg(long, value_name = "JOINT")]
+        without: Vec<String>,
         /// Keep parameters that the logs do not show
         #[arg(long)]
         accept_unexcited: bool,
@@ -578,9 +581,31 @@ fn run(command: Command) -> u8 {
         Command::Export { file, format, out } => export::run(&file, format, out.as_ref()),
         Command::Verify { description, module, language } => commands::verify::run(&description, &module, language),
         Command::Excite { file, asked } => commands::excite::run(&file, &asked),
-        Command::Identify { file, logs, options, validate, load, out, report, skip_bad, instruments, accept_unexcited } => {
-            let asked =
-                commands::identify::Asked { logs, options, validate, load, report, out, skip_bad, instruments, accept_unexcited };
+        Command::Identify {
+            file,
+            logs,
+            options,
+            validate,
+            load,
+            out,
+            report,
+            skip_bad,
+            instruments,
+            without,
+            accept_unexcited,
+        } => {
+            let asked = commands::identify::Asked {
+                logs,
+                options,
+                validate,
+                load,
+                report,
+                out,
+                skip_bad,
+                instruments,
+                without,
+                accept_unexcited,
+            };
             commands::identify::run(&file, &asked)
         }
         Command::Time { file, path, asked } => commands::time::run(&file, path.as_deref(), &asked),

@@ -1,5 +1,6 @@
 //! The estimation: delays, friction, drive gains, base parameters and their intervals, from filtered pieces of logs.
 
+mod delays;
 mod instruments;
 
 use nalgebra::{DMatrix, DVector};
@@ -31,6 +32,8 @@ pub enum Column {
     Friction(usize, usize, Friction),
     /// The reciprocal of the correction of a drive gain.
     Gain(usize),
+    /// A change of the delay of a joint, s.
+    Delay(usize),
 }
 
 /// The state of an estimation.
@@ -54,6 +57,8 @@ pub struct Estimate<'a> {
     pub fixed: Vec<(usize, f64)>,
     /// s, by joint.
     pub delays: Vec<f64>,
+    /// Whether a delay is unknown, by joint.
+    pub seeks_delay: Vec<bool>,
     /// Velocities of Stribeck friction, by joint.
     pub velocities: Vec<f64>,
     /// Drive gains over those that torques were computed with, by joint.
@@ -68,12 +73,8 @@ pub struct Estimate<'a> {
     pub spreads: Vec<f64>,
 }
 
-/// Least improvement, of the root of the mean square, that a delay or Stribeck friction must bring.
+/// Least improvement, of the root of the mean square, that Stribeck friction must bring.
 const WORTH: f64 = 0.99;
-
-/// Delays that are tried, in steps, and the step, s.
-const DELAYS: std::ops::RangeInclusive<i32> = -4..=10;
-const DELAY_STEP: f64 = 2.5e-3;
 
 /// Blocks of time of the cross-validation.
 const FOLDS: usize = 5;
@@ -99,6 +100,7 @@ impl<'a> Estimate<'a> {
             }
         }
         columns.extend((0..n).map(Column::Gain));
+        columns.extend((0..n).map(Column::Delay));
         let x = DVector::zeros(columns.len());
         Estimate {
             arm,
@@ -110,6 +112,7 @@ impl<'a> Estimate<'a> {
             active: Vec::new(),
             fixed: Vec::new(),
             delays: vec![0.0; n],
+            seeks_delay: vec![false; n],
             velocities: arm.joints.iter().map(|joint| joint.stribeck_velocity).collect(),
             corrections: vec![1.0; n],
             sizes: vec![Vec::new(); pieces.len()],
@@ -142,7 +145,7 @@ impl<'a> Estimate<'a> {
                     felt[k] && !known
                 }
                 Column::Friction(_, joint, term) => terms(joint, term),
-                Column::Gain(_) => false,
+                Column::Gain(_) | Column::Delay(_) => false,
             })
             .collect();
     }
@@ -227,6 +230,7 @@ impl<'a> Estimate<'a> {
                 }
             }
         }
+        self.fill_delays(&mut equations, &known);
         (equations, known)
     }
 
@@ -267,52 +271,6 @@ impl<'a> Estimate<'a> {
         }
         for &(place, value) in &self.fixed {
             self.x[place] = value;
-        }
-    }
-
-    /// Whether a delay is the first or the last of those that are tried.
-    pub fn is_last_delay(delay: f64) -> bool {
-        [DELAYS.start(), DELAYS.end()].iter().any(|end| (delay - f64::from(**end) * DELAY_STEP).abs() < 1e-9)
-    }
-
-    /// Delays of torques behind positions that lower the squares of their joint, all else fitted anew; s.
-    pub fn delays(&mut self) {
-        let (equations, known) = self.equations(None);
-        let n = self.arm.dof();
-        let sums = Sums::new(&equations, &self.active);
-        let grams = sums.grams(&self.weights, n, |k| equations.rows[k].joint);
-        let mut whole = Gram::zero(self.active.len());
-        grams.iter().for_each(|gram| whole.add(gram));
-        for j in 0..n {
-            let own = &grams[j];
-            let rows = sums.rows(j);
-            // What is known of a torque.
-            let fixed = |k: usize| self.fixed.iter().map(|(place, value)| equations.row(k)[*place] * value).sum::<f64>();
-            let known: Vec<f64> = rows.iter().map(|&k| known[k] + fixed(k)).collect();
-            let cost = |delay: f64| {
-                let tau = self.pieces.iter().flat_map(|piece| piece.delayed(j, delay));
-                let b: Vec<f64> = tau.zip(&known).map(|(tau, known)| tau * self.corrections[j] - known).collect();
-                let weighted = rows.iter().zip(&b).map(|(&k, b)| self.weights[k] * b);
-                let bb = weighted.clone().zip(&b).map(|(wb, b)| wb * b).sum();
-                let g = sums.times(j, weighted);
-                let total = Gram { h: whole.h.clone(), g: &whole.g - &own.g + &g, bb: 0.0 };
-                let x = solve_fast(&total);
-                Gram { h: own.h.clone(), g, bb }.squares(&x)
-            };
-            let step = DELAY_STEP;
-            let grid: Vec<f64> = DELAYS.map(|k| f64::from(k) * step).collect();
-            let costs: Vec<f64> = grid.iter().map(|&delay| cost(delay)).collect();
-            let best = (0..grid.len()).min_by(|&a, &b| costs[a].total_cmp(&costs[b])).expect("a grid");
-            let mut delay = grid[best];
-            if best > 0 && best + 1 < grid.len() {
-                let (a, b, c) = (costs[best - 1], costs[best], costs[best + 1]);
-                let bend = a - 2.0 * b + c;
-                if bend > 0.0 {
-                    delay += 0.5 * step * (a - c) / bend;
-                }
-            }
-            let without = costs[DELAYS.start().unsigned_abs() as usize];
-            self.delays[j] = if costs[best] < WORTH * WORTH * without { delay } else { 0.0 };
         }
     }
 
@@ -487,9 +445,13 @@ impl<'a> Estimate<'a> {
     /// The solution with intervals, for the columns that are active.
     pub fn finish(&mut self) -> (Equations, Solution, Covariance) {
         let n = self.arm.dof();
-        let (equations, _) = self.equations(None);
+        let (mut equations, _) = self.equations(None);
         let mut gram = self.fit(&equations);
-        let projected = self.with_instruments(&equations);
+        // The intervals allow for delays.
+        let own = self.active.clone();
+        self.active = self.with_delays();
+        let projected = self.with_instruments(&mut equations);
+        self.active = own;
         if let Some(projected) = &projected {
             // Weights are those of the residuals behind the instruments.
             for _ in 0..2 {
@@ -513,7 +475,8 @@ impl<'a> Estimate<'a> {
         (equations, solution, covariance)
     }
 
-    /// The covariance of the active columns. Velocities of Stribeck friction were found from the logs, too: their columns are part of it.
+    /// The covariance of the active columns. Delays and velocities of Stribeck friction were found from the logs, too: their columns are part of
+    /// it.
     fn covariance(&self, equations: &Equations, residuals: &[f64], solution: &Solution, n: usize) -> Covariance {
         let step = 1e-3;
         let of_stribeck = |&place: &usize| match self.columns[place] {
@@ -521,11 +484,11 @@ impl<'a> Estimate<'a> {
             _ => None,
         };
         let stribeck: Vec<(usize, usize, usize)> = self.active.iter().filter_map(of_stribeck).collect();
-        if stribeck.is_empty() {
+        let mut active = self.with_delays();
+        if stribeck.is_empty() && active.len() == self.active.len() {
             return covariance(equations, &self.active, residuals, &self.weights, &solution.inverse, n);
         }
         let mut extended = equations.clone();
-        let mut active = self.active.clone();
         for (place, session, joint) in stribeck {
             // Columns of gains are empty where no gain is found.
             let slope = self.place(Column::Gain(joint));

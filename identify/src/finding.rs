@@ -60,6 +60,10 @@ armgen_codegen::codes! {
         NoGain Error "no-gain",
         /// A joint whose torque the model explains badly.
         PoorFit Warning "poor-fit",
+        /// A line about an earlier identification that is not as it was written.
+        BadBaseline Error "bad-baseline",
+        /// A known load that fits better with another mass.
+        LoadSuspected Warning "load-suspected",
         /// Options that do not fit the arm.
         BadOptions Error "bad-options",
     }

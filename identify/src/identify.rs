@@ -1,5 +1,9 @@
 //! From logs and a description to an identified arm.
 
+mod locked;
+mod reduced;
+mod shown;
+
 use std::ops::Range;
 
 use armgen_codegen::document::excerpt;
@@ -9,13 +13,17 @@ use nalgebra::{DMatrix, DVector};
 use crate::arm::Arm;
 use crate::estimate::{Column, Estimate, Run};
 use crate::finding::{Code, Finding, Findings};
-use crate::fit::{Gram, Solution, Sums, FEW_BLOCKS};
+use crate::fit::FEW_BLOCKS;
 use crate::judge::{judge, Judgement, Model};
 use crate::log::Log;
 use crate::options::{Gains, Load, Options};
 use crate::prepare::{prepare, Friction, Piece};
-use crate::signal::{period, LowPass};
+use crate::signal::{nearest, period, LowPass};
 use crate::suspect;
+
+use reduced::reduce;
+pub use reduced::Reduced;
+use shown::{column_name, inseparable, unshown};
 
 /// A log with what the options say of it.
 #[derive(Clone, Debug, Default)]
@@ -71,8 +79,8 @@ pub struct Identified {
     pub gains: Vec<Interval>,
     /// The ten of the load of each log that has one.
     pub loads: Vec<(usize, Vec<Option<Interval>>)>,
-    /// s, by joint.
-    pub delays: Vec<f64>,
+    /// Of torques behind positions, s, by joint. Not excited: the logs do not determine it, and it is 0. Without a standard error: given.
+    pub delays: Vec<Interval>,
     /// Hz.
     pub cutoff: f64,
     /// Hz, of the first log.
@@ -101,36 +109,29 @@ pub struct Identified {
     pub judgements: Vec<Judgement>,
 }
 
-/// The least squares of all logs, reduced to base parameters and the friction that is written.
-#[derive(Clone, Debug, Default)]
-pub struct Reduced {
-    /// A'WA, A'Wb, b'Wb over base parameters, then `friction`.
-    pub gram: Gram,
-    /// Joint and term of the columns behind the base parameters.
-    pub friction: Vec<(usize, Friction)>,
-    /// A'WA of the rows of each joint, and A'Wr with the residuals r of the estimate.
-    pub of_joints: Vec<(DMatrix<f64>, DVector<f64>)>,
-    /// How far above the least sum of squares the truth is at most, by the covariance of the estimate.
-    pub reach: f64,
-}
-
 /// Blocks of time that last longer have residuals that no noise of a drive has, s.
 const COLOURED: f64 = 2.0;
 
 /// Identifies an arm. Nothing is returned where the findings hold errors.
 pub fn identify(arm: &Arm, inputs: &[Input], options: &Options, findings: &mut Findings) -> Option<Identified> {
     let n = arm.dof();
-    let mut flawed: Vec<Vec<Vec<Range<f64>>>> = Vec::new();
-    for input in inputs {
-        flawed.push(suspect::signals(arm, &input.log, findings));
-    }
     fitting(arm, &inputs[0].log.name, options, findings);
+    let is_locked = |j: &usize| options.without.contains(&arm.joints[*j].name);
+    let locked: Vec<usize> = (0..n).filter(is_locked).collect();
+    let mut logs: Vec<Log> = inputs.iter().map(|input| input.log.clone()).collect();
+    let mut flawed: Vec<Vec<Vec<Range<f64>>>> = Vec::new();
+    for log in &mut logs {
+        locked::hold(arm, &locked, log, findings);
+        let mut of_joints = suspect::signals(arm, log, &locked, findings);
+        // The torque of a lock is a reaction.
+        locked.iter().for_each(|&j| of_joints[j] = vec![f64::NEG_INFINITY..f64::INFINITY]);
+        flawed.push(of_joints);
+    }
     let has_currents = inputs.iter().any(|input| input.log.is_current);
     let gains = start_gains(arm, inputs, options, has_currents, findings);
     if findings.has_errors() {
         return None;
     }
-    let mut logs: Vec<Log> = inputs.iter().map(|input| input.log.clone()).collect();
     for log in logs.iter_mut().filter(|log| log.is_current) {
         for (column, gain) in log.effort.iter_mut().zip(&gains) {
             column.iter_mut().for_each(|x| *x *= gain);
@@ -175,7 +176,11 @@ pub fn identify(arm: &Arm, inputs: &[Input], options: &Options, findings: &mut F
         }
     }
     let along_reference: Option<Vec<Piece>> = options.instruments.then(|| {
-        let along = |log: &Log| Log { q: log.reference.clone().unwrap_or_default(), dq: None, ..log.clone() };
+        let along = |log: &Log| {
+            let reference = log.reference.iter().flatten().zip(&log.q);
+            // Drives follow late: a sign that changes early is no instrument.
+            Log { q: reference.map(|(reference, q)| nearest(&log.t, reference, q)).collect(), dq: None, ..log.clone() }
+        };
         let logs = logs.iter().map(along).enumerate();
         logs.flat_map(|(place, log)| prepare(arm, place, &log, cutoff, &flawed[place], true)).collect()
     });
@@ -198,7 +203,7 @@ pub fn identify(arm: &Arm, inputs: &[Input], options: &Options, findings: &mut F
     if let Some(given) = &options.delay {
         estimate.delays = (0..n).map(|j| given.get(j).or(given.first()).copied().unwrap_or(0.0)).collect();
     } else {
-        estimate.delays();
+        estimate.seek_delays();
     }
     let wanted = options.friction.clone().unwrap_or_else(|| vec![Friction::Viscous, Friction::Coulomb, Friction::Offset]);
     let mut chosen: Vec<Vec<Friction>> = vec![wanted; n];
@@ -237,11 +242,13 @@ pub fn identify(arm: &Arm, inputs: &[Input], options: &Options, findings: &mut F
         estimate.prune(&mut chosen, &[Friction::Load, Friction::Cubic, Friction::Stribeck]);
         activate(&mut estimate, &chosen);
     }
+    estimate.along_reference = along_reference.as_deref();
+    let mut of_delays = vec![None; n];
     if options.delay.is_none() {
-        estimate.delays();
-        activate(&mut estimate, &chosen);
-    }
-    if options.delay.is_none() {
+        of_delays = estimate.settle();
+        if estimate.leave_undetermined_delays(&of_delays) {
+            of_delays = estimate.settle();
+        }
         for (j, delay) in estimate.delays.iter().enumerate().filter(|(_, delay)| Estimate::is_last_delay(**delay)) {
             let text = format!("the delay of joint `{}`, {:.1} ms, is at the end of its range", arm.joints[j].name, 1e3 * delay);
             let help = "bring the stamps of torques and positions together, or give `delay` in the options; noise of positions leads here, too: log rates (`dq_JOINT`)";
@@ -249,7 +256,6 @@ pub fn identify(arm: &Arm, inputs: &[Input], options: &Options, findings: &mut F
             findings.push(Finding::new(Code::DelayAtLimit, &inputs[0].log.name, text, help).in_column(column));
         }
     }
-    estimate.along_reference = along_reference.as_deref();
     let identify_gains = has_currents && options.gains == Gains::Identify;
     let mut gain_intervals: Vec<Interval> = Vec::new();
     let mut of_gains = None;
@@ -347,20 +353,28 @@ pub fn identify(arm: &Arm, inputs: &[Input], options: &Options, findings: &mut F
             findings.push(Finding::new(Code::BiasedRegressor, &logs[0].name, text, help));
         }
     }
-    let (unexcited, hidden) = directions(&estimate, &solution, &matrix);
+    let unshown = unshown(&estimate, &solution, &matrix, !locked.is_empty());
+    let hidden = &unshown.hidden;
+    let kept = (!unshown.of_locked.is_empty()).then(|| {
+        let names: Vec<&str> = unshown.of_locked.iter().map(String::as_str).collect();
+        format!(
+            "without {}, the logs do not show {} in full: they keep of the file what is missing",
+            options.without.join(", "),
+            names.join(", ")
+        )
+    });
     let mut found = Identified {
         velocities: estimate.velocities.clone(),
         sessions,
         gains: gain_intervals,
-        delays: estimate.delays.clone(),
         cutoff,
         rate,
         used: pieces.iter().map(|piece| piece.kept.len()).sum(),
         condition: solution.condition,
         log_det_per_parameter: solution.log_det_per_column,
-        unexcited,
-        inseparable: inseparable(arm, options),
-        spreads: estimate.spreads.clone(),
+        unexcited: unshown.directions,
+        inseparable: inseparable(arm, options).into_iter().chain(kept).collect(),
+        spreads: (0..n).map(|j| if locked.contains(&j) { f64::INFINITY } else { estimate.spreads[j] }).collect(),
         blocks: covariance.blocks,
         ..Identified::default()
     };
@@ -373,6 +387,12 @@ pub fn identify(arm: &Arm, inputs: &[Input], options: &Options, findings: &mut F
             found.friction.push(FrictionValue { session, joint, term, value: Interval { excited: !hidden[k], ..interval(k) } });
         }
     }
+    let delay = |j: usize| {
+        let (value, [sigma, half]) = (estimate.delays[j], of_delays[j].unwrap_or_default());
+        let excited = options.delay.is_some() || of_delays[j].is_some();
+        Interval { value, sigma, low: value - half, high: value + half, excited }
+    };
+    found.delays = (0..n).map(delay).collect();
     for (log, _) in runs.iter().enumerate().filter(|(_, run)| run.load.is_there) {
         let known = estimate.known_load(log);
         let ten = (0..10)
@@ -397,6 +417,9 @@ pub fn identify(arm: &Arm, inputs: &[Input], options: &Options, findings: &mut F
             }
         }
     }
+    if !identify_gains {
+        loads(&estimate, &chosen, inputs, findings);
+    }
     // The correction of gains applies to the torques that the model is judged by.
     for log in logs.iter_mut().filter(|log| log.is_current) {
         for (column, correction) in log.effort.iter_mut().zip(&estimate.corrections) {
@@ -411,6 +434,31 @@ pub fn identify(arm: &Arm, inputs: &[Input], options: &Options, findings: &mut F
         poor_fits(arm, &input.log, judgement, findings);
     }
     Some(found)
+}
+
+/// A mass that is given and fits better with another value is off by this part of it at least.
+const OTHER_MASS: f64 = 0.02;
+
+/// Known masses of loads against those that the logs show, where a log without this load does.
+fn loads(estimate: &Estimate<'_>, chosen: &[Vec<Friction>], inputs: &[Input], findings: &mut Findings) {
+    for (log, run) in estimate.runs.iter().enumerate() {
+        let Some(mass) = run.load.mass else { continue };
+        let mut runs = estimate.runs.to_vec();
+        runs[log].load = Load { is_there: true, ..Load::default() };
+        let mut free = Estimate { runs: &runs, ..estimate.clone() };
+        free.activate(&|joint, term| chosen[joint].contains(&term));
+        let (_, solution, covariance) = free.finish();
+        let Ok(k) = free.active.binary_search(&free.place(Column::Load(log, 0))) else { continue };
+        let is_hidden = solution.hidden.iter().any(|direction| direction[k].abs() > 1e-3);
+        let (found, sigma) = (solution.x[k], covariance.matrix[(k, k)].max(0.0).sqrt());
+        let reach = covariance.reach * sigma;
+        if is_hidden || (found - mass).abs() < reach.max(OTHER_MASS * mass) {
+            continue;
+        }
+        let text = format!("the load of {mass} kg fits better with {:.3} to {:.3} kg", found - reach, found + reach);
+        let help = "look at `load` in the options, or at `--load`: a wrong mass changes the numbers of the arm";
+        findings.push(Finding::new(Code::LoadSuspected, &inputs[log].log.name, text, help));
+    }
 }
 
 /// The model that an estimate is, for one of its logs.
@@ -431,7 +479,7 @@ fn model_of(arm: &Arm, estimate: &Estimate<'_>, log: usize, found: &Identified) 
         pi: pi.as_slice().to_vec(),
         friction,
         velocities: found.velocities.clone(),
-        delays: Some(found.delays.clone()),
+        delays: Some(found.delays.iter().map(|delay| delay.value).collect()),
         spreads: None,
         covariance: None,
     }
@@ -490,6 +538,12 @@ fn fitting(arm: &Arm, log: &str, options: &Options, findings: &mut Findings) {
         let help = format!("{meant}entries are terms of friction: JOINT.friction.KEY");
         findings.push(Finding::new(Code::BadOptions, log, text, help));
     }
+    let joints: Vec<&str> = arm.joints.iter().map(|joint| joint.name.as_str()).collect();
+    for name in options.without.iter().filter(|name| !joints.contains(&name.as_str())) {
+        let meant = did_you_mean(name, &joints).map_or_else(String::new, |meant| format!("did you mean `{meant}`? "));
+        let text = format!("`without` has `{}`, and the arm no such joint", excerpt(name));
+        findings.push(Finding::new(Code::BadOptions, log, text, format!("{meant}joints: {}", joints.join(", "))));
+    }
     if let Some(given) = options.delay.as_ref().filter(|given| given.len() != 1 && given.len() != n) {
         let text = format!("`delay` has {} numbers, and the arm {n} joints", given.len());
         findings.push(Finding::new(Code::BadOptions, log, text, "give one delay for all joints, or one for each, ms"));
@@ -504,7 +558,8 @@ fn fix(arm: &Arm, options: &Options, estimate: &mut Estimate<'_>) {
             let given = options.fixed.iter().find(|(fixed, _)| *fixed == name).map(|(_, value)| *value);
             let kept = options.keep.contains(&name).then(|| joint.friction[place].unwrap_or(0.0));
             let dependent = arm.dependent.iter().any(|of| (of.joint, of.term) == (j, place));
-            let of_file = dependent.then(|| joint.friction[place].unwrap_or(0.0));
+            let is_left = dependent || options.without.contains(&joint.name);
+            let of_file = is_left.then(|| joint.friction[place].unwrap_or(0.0));
             if let Some(value) = given.or(kept).or(of_file) {
                 for session in 0..estimate.sessions {
                     let place = estimate.place(Column::Friction(session, j, term));
@@ -560,135 +615,6 @@ fn cutoff_of(estimate: &Estimate<'_>, highest: f64) -> f64 {
         cutoff += 0.5;
     }
     cutoff.min(highest)
-}
-
-/// Directions that the logs do not show, in words, and for each active column whether it is part of one.
-fn directions(estimate: &Estimate<'_>, solution: &Solution, matrix: &DMatrix<f64>) -> (Vec<(Vec<String>, String)>, Vec<bool>) {
-    let arm = estimate.arm;
-    let name = |k: usize| column_name(estimate, k);
-    let mut hidden = vec![false; estimate.active.len()];
-    let mut found = Vec::new();
-    for direction in &solution.hidden {
-        let largest = direction.amax();
-        let parts: Vec<usize> = (0..direction.len()).filter(|&k| direction[k].abs() > 0.1 * largest).collect();
-        parts.iter().for_each(|&k| hidden[k] = true);
-        let names: Vec<String> = parts.iter().map(|&k| name(k)).collect();
-        let words = parts.iter().map(|&k| format!("{:+.2} {}", direction[k] / largest, name(k))).collect::<Vec<_>>().join(" ");
-        found.push((names, format!("{words} (each over the size of its column)")));
-    }
-    // A base parameter that is known worse than ten times the size of such bodies is not shown either.
-    let size = |column: usize| {
-        let (link, k) = (column / 10, column % 10);
-        if link >= arm.links.len() {
-            return f64::INFINITY;
-        }
-        let mass = arm.links[link].own[0].max(0.1);
-        let length = arm.links[link].ends.iter().fold(0.1, |length: f64, end| length.max(end.norm()));
-        mass * [1.0, length, length * length][usize::from(k > 0) + usize::from(k > 3)]
-    };
-    for k in 0..estimate.active.len() {
-        let Column::Base(base) = estimate.columns[estimate.active[k]] else { continue };
-        let row = arm.combination.row(base);
-        let reference: f64 = row.iter().enumerate().filter(|(_, t)| **t != 0.0).map(|(column, t)| t.abs() * size(column)).sum();
-        let sigma = matrix[(k, k)].max(0.0).sqrt();
-        if !hidden[k] && sigma > 10.0 * reference {
-            hidden[k] = true;
-            found.push((
-                vec![name(k)],
-                format!("{}: its sigma {sigma:.3e} is more than ten times the size of such bodies", name(k)),
-            ));
-        }
-    }
-    (found, hidden)
-}
-
-/// The name of an active column.
-fn column_name(estimate: &Estimate<'_>, k: usize) -> String {
-    let arm = estimate.arm;
-    match estimate.columns[estimate.active[k]] {
-        Column::Base(base) => arm.base[base].name.clone(),
-        Column::Load(log, k) => format!("{} of the load of log {}", crate::body::NAMES[k], log + 1),
-        Column::Friction(_, j, term) => format!("{}.friction.{}", arm.joints[j].name, term.key()),
-        Column::Gain(j) => format!("{}.motor.gain", arm.joints[j].name),
-    }
-}
-
-/// Terms of friction that no motion tells from other parameters, as far as they are asked for or have a value.
-fn inseparable(arm: &Arm, options: &Options) -> Vec<String> {
-    let asked = |term: Friction| match &options.friction {
-        Some(listed) => listed.contains(&term),
-        None => term == Friction::Offset,
-    };
-    let mut all = Vec::new();
-    for of in &arm.dependent {
-        let (joint, term) = (&arm.joints[of.joint], Friction::ALL[of.term]);
-        let value = joint.friction[of.term].unwrap_or(0.0);
-        let (base, friction) = &of.on;
-        if value == 0.0 && !asked(term) {
-            continue;
-        }
-        let name = |joint: usize, term: usize| format!("{}.friction.{}", arm.joints[joint].name, Friction::ALL[term].key());
-        let others = base.iter().map(|&k| arm.base[k].name.clone()).chain(friction.iter().map(|&(j, k)| name(j, k)));
-        let others: Vec<String> = others.collect();
-        let own = name(of.joint, of.term);
-        all.push(if others.is_empty() {
-            format!("{own} exerts no torque in any motion; it keeps {value}")
-        } else {
-            format!("no motion tells {own} from {}; it keeps {value}, and the others are found beside it", others.join(", "))
-        });
-    }
-    all
-}
-
-/// The reduced data over base parameters and the friction of a session: all other columns are eliminated.
-fn reduce(
-    estimate: &Estimate<'_>,
-    equations: &crate::fit::Equations,
-    session: usize,
-    covariance: &DMatrix<f64>,
-    reach: f64,
-) -> Reduced {
-    let is_kept = |place: usize| match estimate.columns[place] {
-        Column::Base(_) => true,
-        Column::Friction(of, ..) => of == session,
-        _ => false,
-    };
-    let kept: Vec<usize> = estimate.active.iter().copied().filter(|&place| is_kept(place)).collect();
-    let others: Vec<usize> = estimate.active.iter().copied().filter(|&place| !is_kept(place)).collect();
-    let joints = Sums::new(equations, &estimate.active).grams(&estimate.weights, estimate.arm.dof(), |k| equations.rows[k].joint);
-    let mut whole = Gram::zero(estimate.active.len());
-    joints.iter().for_each(|gram| whole.add(gram));
-    let places =
-        |of: &[usize]| -> Vec<usize> { of.iter().filter_map(|place| estimate.active.binary_search(place).ok()).collect() };
-    let (of_kept, of_others) = (places(&kept), places(&others));
-    let mut gram = whole.of(&of_kept);
-    if !others.is_empty() {
-        let other = whole.of(&of_others);
-        let zero = DVector::zeros(others.len());
-        let inverse = crate::fit::solve(&other, &zero).inverse;
-        let mixed = DMatrix::from_fn(kept.len(), others.len(), |i, j| whole.h[(of_kept[i], of_others[j])]);
-        let half = &mixed * &inverse;
-        gram.h -= &half * mixed.transpose();
-        gram.g -= &half * &other.g;
-        gram.bb -= other.g.dot(&(&inverse * &other.g));
-        gram.h = 0.5 * (&gram.h + gram.h.transpose());
-    }
-    let friction = kept
-        .iter()
-        .filter_map(|&place| match estimate.columns[place] {
-            Column::Friction(_, joint, term) => Some((joint, term)),
-            _ => None,
-        })
-        .collect();
-    let x = DVector::from_fn(estimate.active.len(), |k, _| estimate.x[estimate.active[k]]);
-    let of_joint = |of: &Gram| {
-        let score = &of.g - &of.h * &x;
-        (of.of(&of_kept).h, DVector::from_fn(of_kept.len(), |k, _| score[of_kept[k]]))
-    };
-    // The sum of squares rises by e'He with the error e: its mean is tr(HC), its variance 2 tr(HCHC).
-    let product = &gram.h * DMatrix::from_fn(kept.len(), kept.len(), |i, j| covariance[(of_kept[i], of_kept[j])]);
-    let rise = product.trace() + reach * (2.0 * (&product * &product).trace().max(0.0)).sqrt();
-    Reduced { gram, friction, of_joints: joints.iter().map(of_joint).collect(), reach: rise * (reach / 3.0).powi(2) }
 }
 
 /// Joints that a model explains badly.

@@ -214,11 +214,12 @@ fn best_delay(pieces: &[Piece], predicted: &[Vec<Vec<f64>>], j: usize) -> f64 {
             })
             .sum::<f64>()
     };
-    let costs: Vec<(f64, f64)> = (-8..=20).map(|k| f64::from(k) * 1.25e-3).map(|delay| (delay, cost(delay))).collect();
-    let best = costs.iter().min_by(|a, b| a.1.total_cmp(&b.1)).expect("a grid");
-    if best.1 < 0.98 * cost(0.0) {
-        best.0
-    } else {
-        0.0
+    let step = 1.25e-3;
+    let grid: Vec<f64> = (-8..=20).map(|k| f64::from(k) * step).collect();
+    let costs: Vec<f64> = grid.iter().map(|&delay| cost(delay)).collect();
+    let best = (0..grid.len()).min_by(|&a, &b| costs[a].total_cmp(&costs[b])).expect("a grid");
+    match costs.get(best.wrapping_sub(1)..best + 2) {
+        Some(&[a, b, c]) if a + c > 2.0 * b => grid[best] + 0.5 * step * (a - c) / (a - 2.0 * b + c),
+        _ => grid[best],
     }
 }

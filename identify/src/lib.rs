@@ -7,6 +7,7 @@
 //! Text and streams go in, values and text come out; nothing here touches a file or a terminal.
 
 pub mod arm;
+pub mod baseline;
 pub mod body;
 pub mod certificate;
 pub mod consistent;

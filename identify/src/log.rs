@@ -332,14 +332,16 @@ fn store(log: &mut Log, row: &[f64], number: usize, format: &Format, findings: &
     }
     if let Some(&last) = log.t.last() {
         if t <= last {
-            let (text, help) = if t < log.t[0] + 0.1 * (last - log.t[0]) {
+            let (text, help, badness) = if t < log.t[0] + 0.1 * (last - log.t[0]) {
                 let text = format!("the clock starts again: {t} s after {last} s");
-                (text, format!("cut the log here: its second part begins at line {number}"))
+                (text, format!("cut the log here: its second part begins at line {number}"), Severity::Error)
             } else {
                 let text = format!("the stamp {t} s is not above the one before it, {last} s");
-                (text, "stamps increase from line to line: leave repeated samples out".to_owned())
+                let help = "stamps increase from line to line: leave repeated samples out, or have them left out by `--skip-bad`";
+                (text, help.to_owned(), if format.skip_bad { Severity::Warning } else { Severity::Error })
             };
-            findings.push(Finding::new(Code::TimeNotIncreasing, &log.name, text, help).at(number, 0).in_column("t"));
+            let finding = Finding::new(Code::TimeNotIncreasing, &log.name, text, help).at(number, 0).in_column("t");
+            findings.push(finding.as_bad_as(badness));
             return;
         }
     }

@@ -72,13 +72,15 @@ pub struct Options {
     pub keep: Vec<String>,
     /// Entries with given values.
     pub fixed: Vec<(String, f64)>,
+    /// Joints that are locked in all logs.
+    pub without: Vec<String>,
     /// Whether columns along the reference of the drives are instruments.
     pub instruments: bool,
     /// Whether faulty rows of logs are gaps.
     pub skip_bad: bool,
 }
 
-const KEYS: [Key; 13] = [
+const KEYS: [Key; 14] = [
     optional("logs"),
     optional("validate"),
     optional("columns"),
@@ -90,6 +92,7 @@ const KEYS: [Key; 13] = [
     optional("delay"),
     optional("keep"),
     optional("fixed"),
+    optional("without"),
     optional("instruments"),
     optional("skip_bad"),
 ];
@@ -196,6 +199,9 @@ impl Reading<'_> {
             } else {
                 self.reader.wrong_kind(node, key, "fixed", "a mapping", "write for instance `fixed: {elbow.friction.offset: 0}`");
             }
+        }
+        if let Some((key, node)) = fields.get("without") {
+            options.without = self.list(node, key, "without").iter().filter_map(|item| self.text(item, key, "without")).collect();
         }
         options.instruments = self.flag(fields, "instruments");
         options.skip_bad = self.flag(fields, "skip_bad");

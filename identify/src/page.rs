@@ -39,6 +39,10 @@ fn short(x: f64) -> String {
     }
 }
 
+fn milliseconds(seconds: f64) -> String {
+    format!("{:.2} ms", (1e5 * seconds).round() / 100.0 + 0.0)
+}
+
 fn table(head: &[&str], rows: &[Vec<String>]) -> String {
     let mut text = String::from("<table><thead><tr>");
     head.iter().for_each(|cell| _ = write!(text, "<th>{}</th>", escaped(cell)));
@@ -183,7 +187,7 @@ fn of_log(arm: &Arm, title: &str, of: &Judgement) -> String {
                 format!("{} {}", short(of.rms[j]), unit(j)),
                 percent(of.relative[j]),
                 percent(of.moving[j]),
-                format!("{:.1} ms", 1e3 * of.delays[j]),
+                milliseconds(of.delays[j]),
             ]
         })
         .collect();
@@ -370,6 +374,19 @@ pub fn html(
         text += "<h2>Drive gains</h2>\n";
         text += &table(&["joint", "N m/A, N/A", "3 sigma"], &rows);
     }
+    let of_delay = |(of, joint): (&Interval, &crate::arm::Joint)| {
+        let range = match (of.excited, of.sigma > 0.0) {
+            (false, _) => "not determined".to_owned(),
+            (true, false) => "given".to_owned(),
+            (true, true) => format!("{} to {}", milliseconds(of.low), milliseconds(of.high)),
+        };
+        vec![joint.name.clone(), milliseconds(of.value), range]
+    };
+    text += "<h2>Delays</h2>\n";
+    text += &table(
+        &["joint", "torque behind position", "3 sigma"],
+        &found.delays.iter().zip(&arm.joints).map(of_delay).collect::<Vec<_>>(),
+    );
     if let Some((written, proofs)) = written {
         text += "<h2>Certificate</h2>\n";
         proofs.lines().for_each(|line| _ = writeln!(text, "<p>{}</p>", escaped(line)));

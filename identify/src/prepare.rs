@@ -165,7 +165,7 @@ fn piece(
     let wide = LowPass::new(wide_cutoff, rate);
     let filter = LowPass::new(cutoff, rate);
     let (mut q, mut dq, mut ddq) = (vec![0.0; n * samples], vec![0.0; n * samples], vec![0.0; n * samples]);
-    let mut eps = Vec::new();
+    let (mut eps, mut noises) = (Vec::new(), Vec::new());
     let mut steady = vec![false; n * samples];
     for i in 0..n {
         let position = on_grid(&log.q[i]);
@@ -177,6 +177,7 @@ fn piece(
         let second: Vec<f64> = rough.windows(3).map(|x| x[0] - 2.0 * x[1] + x[2]).collect();
         let noise = spread(&second) / 6f64.sqrt() * (2.0 * wide_cutoff / rate).sqrt().min(1.0);
         eps.push((3.0 * noise).max(LEAST_EPS));
+        noises.push(noise);
         let (smooth, rates) = (wide.both_ways(&position), wide.both_ways(&rough));
         let accelerations = derivative(&rates, period);
         let mut start = 0;
@@ -222,7 +223,7 @@ fn piece(
     };
     let y = if with_columns { keep(&arm.regressor(&q, &dq, &ddq), n * arm.base.len()) } else { Vec::new() };
     let known = keep(&arm.known(&q, &dq, &ddq), n);
-    let signs = dq.iter().enumerate().map(|(k, dq)| (dq / eps[k % n]).tanh()).collect();
+    let signs = dq.iter().enumerate().map(|(k, dq)| smooth_sign(*dq, eps[k % n], noises[k % n])).collect();
     let start = grid[0];
     let mut piece =
         Piece { log: place, period, start, q, dq, ddq, tau, kept, y, known, counts, eps, signs, filter, of_rates: Vec::new() };
@@ -230,18 +231,33 @@ fn piece(
     piece
 }
 
+/// The sign of a rate with noise, smooth within eps.
+///
+/// tanh u + k u sech² u with u = dq/eps. The first term alone lacks eps ln 2 of the integral of a sign on either side of 0, which seems to be
+/// less Coulomb friction, and more Stribeck friction. With k the mean over the noise has the whole integral, and a reversal is short before
+/// the low pass. For noise n, E[eps ln cosh(n/eps)] and the like are n²/(2 eps).
+fn smooth_sign(dq: f64, eps: f64, noise: f64) -> f64 {
+    let (u, part) = (dq / eps, 0.5 * (noise / eps).powi(2));
+    let k = (std::f64::consts::LN_2 + part) / (std::f64::consts::LN_2 - part);
+    let t = u.tanh();
+    t + k * u * (1.0 - t * t)
+}
+
 impl Piece {
-    /// A part of the kept samples, as it would be with the states under other joints: joint j has the states of `order[j]`, and the torque of
-    /// `torques[j]` times a scale. Y is not filtered.
-    pub fn exchanged(&self, arm: &Arm, order: &[usize], torques: &[(usize, f64)], step: usize) -> Piece {
+    /// A part of the kept samples, as it would be with the states under other joints and signs: joint j has the states of `order[j]` times
+    /// `signs[j]`, and the torque of `torques[j]` times a scale. Y is not filtered.
+    pub fn exchanged(&self, arm: &Arm, order: &[usize], signs: &[f64], torques: &[(usize, f64)], step: usize) -> Piece {
         let n = order.len();
         let rows: Vec<usize> = (0..self.kept.len()).step_by(step).collect();
-        let by_joint = |x: &[f64], at: usize| order.iter().map(|&j| x[at * n + j]).collect::<Vec<_>>();
+        let by_joint = |x: &[f64], at: usize| order.iter().zip(signs).map(|(&j, sign)| sign * x[at * n + j]).collect::<Vec<_>>();
         let of_states = |x: &[f64]| rows.iter().flat_map(|&row| by_joint(x, self.kept[row])).collect::<Vec<f64>>();
         let (q, dq, ddq) = (of_states(&self.q), of_states(&self.dq), of_states(&self.ddq));
         let torque = |&(j, scale): &(usize, f64)| rows.iter().map(|&row| scale * self.tau[j][self.kept[row]]).collect();
-        let of_rates = |&j: &usize| OF_RATES.map(|term| self.friction(j, term, 1.0, &[]));
-        let thin = |column: &Vec<f64>| rows.iter().map(|&row| column[row]).collect();
+        // All of these are odd functions of the rate.
+        let of_rates = |(&j, sign): (&usize, &f64)| {
+            let thin = |column: Vec<f64>| rows.iter().map(|&row| sign * column[row]).collect();
+            OF_RATES.map(|term| thin(self.friction(j, term, 1.0, &[])))
+        };
         let spacing = if rows.len() > 1 { self.kept[rows[1]] - self.kept[rows[0]] } else { step };
         Piece {
             log: self.log,
@@ -255,7 +271,7 @@ impl Piece {
             eps: order.iter().map(|&j| self.eps[j]).collect(),
             signs: of_states(&self.signs),
             filter: self.filter.clone(),
-            of_rates: order.iter().map(of_rates).map(|columns| [0, 1, 2].map(|k| thin(&columns[k]))).collect(),
+            of_rates: order.iter().zip(signs).map(of_rates).collect(),
             q,
             dq,
             ddq,

@@ -121,6 +121,10 @@ pub fn json(
         .zip(&arm.joints)
         .map(|(value, joint)| with(json!({"joint": joint.name, "identified": value.excited}), interval(value)))
         .collect();
+    let delay = |(of, joint): (&Interval, &crate::arm::Joint)| {
+        with(json!({"joint": joint.name, "determined": of.excited && of.sigma > 0.0}), interval(of))
+    };
+    let delays: Vec<Value> = found.delays.iter().zip(&arm.joints).map(delay).collect();
     let payload: Vec<Value> = found
         .loads
         .iter()
@@ -143,7 +147,8 @@ pub fn json(
         "used": found.used,
         "rate": number(found.rate),
         "cutoff": number(found.cutoff),
-        "delay": numbers(&found.delays),
+        "delay": found.delays.iter().map(|delay| number(delay.value)).collect::<Vec<_>>(),
+        "delays": delays,
         "logs": logs,
         "residual": {
             "unit": "N m, N",

@@ -69,6 +69,28 @@ pub fn interpolate(t: &[f64], x: &[f64], at: &[f64]) -> Vec<f64> {
         .collect()
 }
 
+/// A signal at the lag at which it is nearest to another one: within a tenth of a second.
+pub fn nearest(t: &[f64], x: &[f64], other: &[f64]) -> Vec<f64> {
+    let n = t.len();
+    if n < 8 {
+        return x.to_vec();
+    }
+    let (first, last) = (t[0], t[n - 1]);
+    let later = |lag: f64| interpolate(t, x, &t.iter().map(|t| (t - lag).clamp(first, last)).collect::<Vec<_>>());
+    let mut lag = 0.0f64;
+    for _ in 0..6 {
+        let at = later(lag);
+        let (mut product, mut square) = (0.0, 0.0);
+        for k in 1..n - 1 {
+            let slope = (at[k + 1] - at[k - 1]) / (t[k + 1] - t[k - 1]);
+            product += slope * (at[k] - other[k]);
+            square += slope * slope;
+        }
+        lag = (lag + product / f64::max(square, 1e-300)).clamp(-0.1, 0.1);
+    }
+    later(lag)
+}
+
 /// A value of an even grid between its samples, by the cubic through four of them; `at` counts samples.
 pub fn between(x: &[f64], at: f64) -> f64 {
     let last = x.len() - 1;
@@ -226,5 +248,17 @@ mod tests {
             assert!((between(&even, at) - cubic(at)).abs() < 1e-9 * cubic(8.0).abs(), "{at}");
         }
         assert_eq!(median(&[3.0, 1.0, 2.0, 10.0]), 2.5);
+    }
+
+    #[test]
+    fn a_lag_is_taken_out() {
+        let t: Vec<f64> = (0..400).map(|k| 0.01 * f64::from(k)).collect();
+        let wave = |t: f64| (2.0 * t).sin() + 0.3 * (5.0 * t).cos();
+        for lag in [-0.03, 0.0, 0.0123, 0.08] {
+            let x: Vec<f64> = t.iter().map(|t| wave(*t)).collect();
+            let other: Vec<f64> = t.iter().map(|t| wave(t - lag)).collect();
+            let found = nearest(&t, &x, &other);
+            assert!((50..350).all(|k| (found[k] - other[k]).abs() < 1e-4), "{lag}");
+        }
     }
 }

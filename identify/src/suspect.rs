@@ -1,6 +1,7 @@
 //! Logs that are not what they seem: other units, other orders, other signs, frozen columns, torques at a limit.
 
 mod rates;
+mod states;
 mod torques;
 
 use std::ops::Range;
@@ -20,8 +21,8 @@ const STILL: f64 = 1e-3;
 /// Equal values in a row that are a frozen signal, and how long they last at least, s.
 const FROZEN: (usize, f64) = (20, 0.25);
 
-/// Looks at the signals of a log; the stretches of time, by joint, with torques that do not count.
-pub fn signals(arm: &Arm, log: &Log, findings: &mut Findings) -> Vec<Vec<Range<f64>>> {
+/// Looks at the signals of a log, but for joints that are known to be locked; the stretches of time, by joint, with torques that do not count.
+pub fn signals(arm: &Arm, log: &Log, locked: &[usize], findings: &mut Findings) -> Vec<Vec<Range<f64>>> {
     let n = arm.dof();
     let mut flawed = vec![Vec::new(); n];
     if log.t.len() < 10 {
@@ -40,7 +41,7 @@ pub fn signals(arm: &Arm, log: &Log, findings: &mut Findings) -> Vec<Vec<Range<f
         // Nothing else that such columns show counts.
         return flawed;
     }
-    for i in 0..n {
+    for i in (0..n).filter(|i| !locked.contains(i)) {
         let name = &arm.joints[i].name;
         let (least, most) = range(&log.q[i]);
         let frozen_position = frozen(&log.q[i], &log.t);
@@ -64,7 +65,9 @@ pub fn signals(arm: &Arm, log: &Log, findings: &mut Findings) -> Vec<Vec<Range<f
         } else if most - least < STILL {
             let text =
                 format!("joint `{name}` stays within {:.2e} {}", most - least, if arm.joints[i].slides { "m" } else { "rad" });
-            let help = "its friction and inertia do not show: move every joint, or take the joint out with `fixed` and `keep`";
+            let help = format!(
+                "its friction and inertia do not show: move every joint, or leave a locked joint out, `--without {name}`"
+            );
             findings.push(Finding::new(Code::UnexcitedJoint, &log.name, text, help).in_column(format!("q_{name}")));
         }
         let (least, most) = range(&log.effort[i]);

@@ -18,6 +18,7 @@ use armgen_codegen::validate;
 use nalgebra::{DVector, Vector3};
 
 use crate::arm::Arm;
+use crate::baseline::Baseline;
 use crate::body::{self, Ten};
 use crate::consistent::Consistent;
 use crate::identify::{Identified, Interval};
@@ -431,7 +432,10 @@ pub fn write_finer(
         }
         // Values with the same path: a name that several joints share is no single use, so there are none.
         let edited = edit(source, MARK, &planned.changes).map_err(|(span, text)| at(span, &text))?;
-        let again = Source::new(source.name(), edited.text.as_str());
+        let baseline =
+            Baseline { delays: found.delays.iter().map(|delay| delay.value).collect(), spreads: found.spreads.clone() };
+        let text = baseline.written(arm, &edited.text);
+        let again = Source::new(source.name(), text.as_str());
         let (read, diagnostics) = validate::read(&again);
         let Some((manipulator, _)) = read.filter(|_| !diagnostics.has_errors()) else {
             let text = diagnostics.render(&again, armgen_codegen::diagnostic::Colour::Never);
@@ -443,7 +447,7 @@ pub fn write_finer(
                 let line = |(span, text): &(Span, String)| at(*span, text);
                 written.notes = planned.notes.iter().chain(&edited.notes).map(line).collect();
                 written.notes.dedup();
-                (written.text, written.changed, written.pivots) = (edited.text, planned.changes.len(), pivots);
+                (written.text, written.changed, written.pivots) = (text, planned.changes.len(), pivots);
                 return Ok(written);
             }
             Err(link) => {

@@ -84,6 +84,31 @@ pub(crate) struct Motion {
 
 /// A motion of random harmonics, with the torques of the function `inverse_dynamics`, which knows nothing of regressors.
 pub(crate) fn motion(text: &str, seed: u64, seconds: f64, rate: f64) -> Motion {
+    motion_from(text, seed, seconds, rate, 0.0)
+}
+
+/// The same with the torque of each joint that is late by a delay, s.
+pub(crate) fn late_motion(text: &str, seed: u64, seconds: f64, rate: f64, delays: &[f64]) -> Motion {
+    let mut all = motion(text, seed, seconds, rate);
+    let n = delays.len();
+    for (j, delay) in delays.iter().enumerate() {
+        let before = motion_from(text, seed, seconds, rate, -delay);
+        (j..all.tau.len()).step_by(n).for_each(|k| all.tau[k] = before.tau[k]);
+    }
+    all
+}
+
+/// The same with a joint that is locked at a position.
+pub(crate) fn locked_motion(text: &str, seed: u64, seconds: f64, rate: f64, joint: usize, at: f64) -> Motion {
+    motion_of(text, seed, seconds, rate, 0.0, Some((joint, at)))
+}
+
+/// The same with states and torques that are later than their stamps, s.
+fn motion_from(text: &str, seed: u64, seconds: f64, rate: f64, later: f64) -> Motion {
+    motion_of(text, seed, seconds, rate, later, None)
+}
+
+fn motion_of(text: &str, seed: u64, seconds: f64, rate: f64, later: f64, locked: Option<(usize, f64)>) -> Motion {
     let (manipulator, _) = validate::read(&Source::new("arm", text)).0.expect("a valid arm");
     let n = manipulator.dof();
     let functions = Selection::named(["inverse_dynamics"]).expect("it has this name");
@@ -102,6 +127,7 @@ pub(crate) fn motion(text: &str, seed: u64, seconds: f64, rate: f64) -> Motion {
     for k in 0..samples {
         let t = k as f64 / rate;
         all.t.push(t);
+        let t = t + later;
         for j in 0..n {
             let (mut q, mut dq, mut ddq) = (0.2 * j as f64, 0.0, 0.0);
             for [a, w, phase] in &waves[j * harmonics..(j + 1) * harmonics] {
@@ -109,6 +135,9 @@ pub(crate) fn motion(text: &str, seed: u64, seconds: f64, rate: f64) -> Motion {
                 q += a * sine;
                 dq += a * w * cosine;
                 ddq -= a * w * w * sine;
+            }
+            if let Some((_, at)) = locked.filter(|(joint, _)| *joint == j) {
+                (q, dq, ddq) = (at, 0.0, 0.0);
             }
             all.q.push(q);
             all.dq.push(dq);
@@ -135,4 +164,10 @@ pub(crate) fn csv(arm: &Arm, motion: &Motion, decimals: usize) -> String {
         text.push('\n');
     }
     text
+}
+
+/// The root of the mean square.
+pub(crate) fn rms<'x>(of: impl Iterator<Item = &'x f64>) -> f64 {
+    let all: Vec<f64> = of.map(|x| x * x).collect();
+    (all.iter().sum::<f64>() / all.len() as f64).sqrt()
 }

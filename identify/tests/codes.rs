@@ -46,6 +46,16 @@ fn faults_of_fields_and_lines_have_their_places() {
     let skipping = |format: &mut Format| format.skip_bad = true;
     check(&of_text(&rows("0.01,1,2,x,4,5,6,7,8,9\n"), skipping), Code::BadNumber, Warning, 3, "q_elbow");
     check(&of_text(&rows("0,1,2,3,4,5,6,7,8,9\n"), plain), Code::TimeNotIncreasing, Error, 3, "t");
+    // A repeated stamp is a faulty row; a clock that starts again is not a fault of a row.
+    check(&of_text(&rows("0,1,2,3,4,5,6,7,8,9\n"), skipping), Code::TimeNotIncreasing, Warning, 3, "t");
+    let twice = rows("0,1,2,3,4,5,6,7,8,9\n0.01,1,2,3,4,5,6,7,8,9\n0.01,7,2,3,4,5,6,7,8,9\n");
+    let mut wanted = format(&arm(ELBOW));
+    wanted.skip_bad = true;
+    let (log, findings) = read("log.csv", twice.as_bytes(), &wanted);
+    assert!(!findings.has_errors() && findings.iter().count() == 2, "{}", findings.render());
+    assert_eq!((log.t.as_slice(), log.lines.as_slice(), log.q[0][1]), ([0.0, 0.01, 0.02].as_slice(), [2, 4, 6].as_slice(), 1.0));
+    let restarted = rows("0.5,1,2,3,4,5,6,7,8,9\n");
+    check(&of_text(&restarted, skipping), Code::TimeNotIncreasing, Error, 4, "t");
     check(&of_text("", plain), Code::EmptyLog, Error, 0, "");
     check(&of_text(HEADER, plain), Code::EmptyLog, Error, 0, "");
     check(&of_text(&HEADER.replace("tau_elbow", "tau_elbw"), plain), Code::MissingColumn, Error, 1, "tau_elbow");
@@ -100,7 +110,7 @@ fn signals_that_are_not_what_they_seem_are_named() {
     let signals = |change: &dyn Fn(&mut Motion)| {
         let (input, mut findings) = spoilt(&arm, change);
         assert!(!findings.has_errors(), "{}", findings.render());
-        suspect::signals(&arm, &input.log, &mut findings);
+        suspect::signals(&arm, &input.log, &[], &mut findings);
         findings
     };
     assert_eq!(signals(&|_| {}).iter().count(), 0, "{}", signals(&|_| {}).render());

@@ -106,6 +106,57 @@ fn terms_are_found_where_they_are_and_nowhere_else() {
     assert!(missed.len() <= 10, "{missed:?}");
 }
 
+/// A sign that is smoothed over the noise of rates lacks a part of its integral, which must not seem to be Stribeck friction.
+#[test]
+fn noise_of_rates_makes_no_stribeck_friction_and_hides_none() {
+    let with = ELBOW.replace("load: 0.04", "load: 0.04, stribeck: {torque: 2, velocity: 0.12}");
+    for seed in 1..=4 {
+        for (text, truth) in [(ELBOW, 0.0), (with.as_str(), 2.0)] {
+            let arm = arm(text);
+            let mut motion = motion(text, seed, 30.0, 100.0);
+            let mut random = Random(seed);
+            motion.dq.iter_mut().for_each(|dq| *dq += 4e-3 * random.normal());
+            motion.tau.iter_mut().for_each(|tau| *tau += 0.1 * random.normal());
+            let (log, mut findings) = read("log.csv", csv(&arm, &motion, 6).as_bytes(), &format(&arm));
+            let input = Input { log, ..Input::default() };
+            let found =
+                identify(&arm, &[input], &Options::default(), &mut findings).unwrap_or_else(|| panic!("{}", findings.render()));
+            let of: Vec<_> = found.friction.iter().filter(|of| of.term == Friction::Stribeck).collect();
+            println!("seed {seed}, {truth}: {of:?} {:?}", found.velocities);
+            let holds = of.iter().all(|of| of.joint == 2 && of.value.low < truth && truth < of.value.high);
+            assert!(holds && of.len() == usize::from(truth > 0.0), "seed {seed}: {of:?}");
+        }
+    }
+}
+
+/// A term that noise hides may be there: the intervals of the others are those with it, too.
+#[test]
+fn intervals_allow_for_terms_that_are_left_out() {
+    let arm = arm(ELBOW);
+    let mut motion = motion(ELBOW, 2, 15.0, 100.0);
+    let mut random = Random(4);
+    motion.tau.iter_mut().for_each(|tau| *tau += 6.0 * random.normal());
+    let (log, _) = read("log.csv", csv(&arm, &motion, 6).as_bytes(), &format(&arm));
+    let with = |friction: Option<Vec<Friction>>| {
+        let options = Options { friction, ..Options::default() };
+        let input = Input { log: log.clone(), ..Input::default() };
+        identify(&arm, &[input], &options, &mut Findings::default()).expect("a good log")
+    };
+    let (auto, alone) = (with(None), with(Some(vec![Friction::Viscous, Friction::Coulomb, Friction::Offset])));
+    let of = |found: &Identified, joint: usize, term: Friction| {
+        found.friction.iter().find(|of| (of.joint, of.term) == (joint, term)).map(|of| of.value.high - of.value.low)
+    };
+    let mut compared = 0;
+    for joint in (1..3).filter(|&joint| of(&auto, joint, Friction::Load).is_none() && of(&auto, joint, Friction::Cubic).is_none())
+    {
+        let widths = [&auto, &alone].map(|found| of(found, joint, Friction::Coulomb).expect("Coulomb friction"));
+        println!("{joint}: {widths:?}");
+        assert!(widths[0] > 1.3 * widths[1], "{widths:?}");
+        compared += 1;
+    }
+    assert!(compared > 0, "{:?}", auto.friction);
+}
+
 /// Drawn at random (seed 7 of `benches/identification.py`).
 const FIVE: &str = "
 name: arm

@@ -49,6 +49,31 @@ fn noise_of_positions_is_seen_and_instruments_take_its_bias_away() {
     assert!(plain > 1.0 && free < 0.6, "{plain} {free}");
 }
 
+/// The sign of a noisy rate is that of the reference: dry friction is free of the bias, also where drives follow late.
+#[test]
+fn dry_friction_comes_from_the_reference() {
+    let late = |text: String| {
+        // The reference of two samples later.
+        let lines: Vec<Vec<String>> = text.lines().map(|line| line.split(',').map(str::to_owned).collect()).collect();
+        let of = |k: usize| {
+            let from = if k == 0 { 0 } else { (k + 2).min(lines.len() - 1) };
+            let cells = (0..lines[k].len()).map(|i| if (4..7).contains(&i) { &lines[from][i] } else { &lines[k][i] });
+            cells.cloned().collect::<Vec<_>>().join(",") + "\n"
+        };
+        (0..lines.len()).map(of).collect::<String>()
+    };
+    let arm = arm(ELBOW);
+    for (seed, text) in [(3, log(3, 2e-3)), (4, late(log(4, 2e-3)))] {
+        let (found, ..) = judged(&text, true);
+        for of in &found.friction {
+            let truth = arm.joints[of.joint].friction[of.term as usize].unwrap_or(0.0);
+            println!("seed {seed}: joint {} {:?} {truth} {:?}", of.joint, of.term, of.value);
+            let holds = of.value.low < truth && truth < of.value.high;
+            assert!(holds, "seed {seed}, joint {}: {:?} {truth} {:?}", of.joint, of.term, of.value);
+        }
+    }
+}
+
 /// Without noise of positions there is nothing to be warned of, and both ways agree with the truth.
 #[test]
 #[ignore = "wide"]

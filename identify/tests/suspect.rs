@@ -89,6 +89,62 @@ fn every_pair_of_exchanged_joints_is_named() {
     }
 }
 
+/// A slide and a turn about one axis at the end, which hardly act on the joints before them.
+fn scara_with_a_turn() -> String {
+    SCARA.replace(
+        "regressor: base",
+        "  - {name: j4, type: revolute, a: 0, alpha: 0, d: 0, theta: 0,
+     link: {mass: 1, com: [0.01, 0.005, 0.03], inertia: {xx: 0.002, yy: 0.002, zz: 0.003}},
+     motor: {ratio: 20, inertia: 3e-4}, friction: {viscous: 0.2, coulomb: 0.8}}
+regressor: base",
+    )
+}
+
+/// A slide under the name of a turn fits as well: its mass and rotor tell.
+#[test]
+fn a_slide_and_a_turn_about_one_axis_are_told_apart() {
+    let text = scara_with_a_turn();
+    assert!(!found(&text, &|_| {}).has_errors());
+    for (i, k) in [(0, 3), (1, 3), (2, 3)] {
+        let findings = found(&text, &|motion| {
+            [&mut motion.q, &mut motion.dq, &mut motion.tau].map(|x| exchange(x, 4, i, k)).into_iter().collect()
+        });
+        let words = |j: usize, of: usize| format!("q_j{0}, dq_j{0}, tau_j{0} hold those of j{of}", j + 1, of = of + 1);
+        let named = format!("{}; {}", words(i, k), words(k, i));
+        let said = of(&findings, Code::JointOrder);
+        assert!(
+            said.len() == 1 && said[0].1.contains(&named) && said[0].0 == format!("q_j{}", i + 1),
+            "{named}\n{}",
+            findings.render()
+        );
+    }
+}
+
+/// A joint that is turned in position and rate, or in its torque too, where the arm is no mirror image of itself.
+#[test]
+fn a_turned_joint_is_named() {
+    let turned = |joint: usize, whole: bool| {
+        found(ELBOW, &|motion| {
+            let signals = [Some(&mut motion.q), Some(&mut motion.dq), whole.then_some(&mut motion.tau)];
+            signals.into_iter().flatten().for_each(|x| x.iter_mut().skip(joint).step_by(3).for_each(|x| *x *= -1.0));
+        })
+    };
+    for (joint, name) in [(1, "shoulder"), (2, "elbow")] {
+        for whole in [true, false] {
+            let findings = turned(joint, whole);
+            let said = of(&findings, Code::SignSuspected);
+            let torque = if whole { format!(", tau_{name}") } else { String::new() };
+            let named = format!("with the other sign of q_{name}, dq_{name}{torque}");
+            let is_right = said.len() == 1 && said[0].1.ends_with(&named) && said[0].0 == format!("q_{name}");
+            assert!(is_right && findings.has_errors(), "{named}\n{}", findings.render());
+        }
+    }
+    // About a vertical axis the mirror image of the arm moves as this one does: the torque alone seems to be turned, or nothing.
+    let said = turned(0, false);
+    assert!(of(&said, Code::SignSuspected)[0].1.contains("the sign of tau_base is turned"), "{}", said.render());
+    assert!(!turned(0, true).has_errors());
+}
+
 #[test]
 fn degrees_throughout_are_seen_at_the_limits() {
     let limited = ELBOW.replace("limits: {effort", "limits: {position: [-3, 3], velocity: 4, effort");

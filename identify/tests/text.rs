@@ -249,6 +249,8 @@ fn check_style(seed: u64) {
         base: arm.base.iter().map(|_| interval(0.0)).collect(),
         sessions: vec![String::new()],
         velocities: vec![0.123; 3],
+        delays: vec![interval(1e-3); 3],
+        spreads: vec![0.2; 3],
         reduced: Reduced { friction: friction.iter().map(|of| (of.joint, of.term)).collect(), ..Reduced::default() },
         friction: friction.clone(),
         ..Identified::default()
@@ -381,6 +383,8 @@ fn an_impossible_body_is_not_written() {
         base: arm.base.iter().map(|_| Interval { sigma: 1e-3, excited: true, ..Interval::default() }).collect(),
         sessions: vec![String::new()],
         velocities: vec![0.1; 3],
+        delays: vec![Interval::default(); 3],
+        spreads: vec![0.2; 3],
         ..Identified::default()
     };
     let mut of = Consistent {

@@ -6,7 +6,9 @@ use std::path::{Path, PathBuf};
 
 use armgen_codegen::diagnostic::Severity;
 use armgen_codegen::kinds::Scalar;
+use armgen_codegen::source::Source;
 use armgen_identify::arm::Arm;
+use armgen_identify::baseline::Baseline;
 use armgen_identify::certificate::{write_certified, Proved, LARGEST_GAP};
 use armgen_identify::consistent::{consistent, rise};
 use armgen_identify::finding::{Code, Finding, Findings};
@@ -33,6 +35,7 @@ pub(crate) struct Asked {
     pub(crate) out: Option<PathBuf>,
     pub(crate) skip_bad: bool,
     pub(crate) instruments: bool,
+    pub(crate) without: Vec<String>,
     pub(crate) accept_unexcited: bool,
 }
 
@@ -88,7 +91,7 @@ fn run_or_exit_code(file: &Path, asked: &Asked) -> Result<u8, u8> {
             terminal::error(&format!("{}: without a log to identify from there is nothing to write", out.display()));
             return Err(UNREADABLE);
         }
-        return judged(&arm, held_out, asked, &chosen, findings);
+        return judged(&source, &arm, held_out, asked, &chosen, findings);
     }
     let found = with_spinner("identifying", || identify(&arm, &inputs, &chosen, &mut findings));
     let Some(found) = found.filter(|_| !findings.has_errors()) else { return Err(refused(&findings)) };
@@ -224,6 +227,7 @@ fn options_of(asked: &Asked) -> Result<(Options, PathBuf), u8> {
     };
     chosen.skip_bad |= asked.skip_bad;
     chosen.instruments |= asked.instruments;
+    chosen.without.extend(asked.without.iter().cloned());
     Ok((chosen, folder))
 }
 
@@ -267,18 +271,29 @@ fn model(arm: &Arm, found: &Identified, written: Option<&Written>) -> Model {
         },
         friction: written.map_or(friction, |written| written.friction.clone()),
         velocities: written.map_or_else(|| found.velocities.clone(), |written| written.velocities.clone()),
-        delays: Some(found.delays.clone()),
+        delays: Some(found.delays.iter().map(|delay| delay.value).collect()),
         spreads: Some(found.spreads.clone()),
         covariance: Some(found.covariance.clone()),
     }
 }
 
 /// Judges the numbers of a description, identifies nothing.
-fn judged(arm: &Arm, logs: Vec<Log>, asked: &Asked, chosen: &Options, mut findings: Findings) -> Result<u8, u8> {
+fn judged(source: &Source, arm: &Arm, logs: Vec<Log>, asked: &Asked, chosen: &Options, mut findings: Findings) -> Result<u8, u8> {
     if logs.is_empty() {
         terminal::error("no log is given: name one to identify from, or one to judge by, `--validate LOG.csv`");
         return Err(UNREADABLE);
     }
+    let baseline = Baseline::read(source, arm).map_err(|finding| {
+        terminal::diagnose(&finding.to_string());
+        FAULTY
+    })?;
+    if baseline.is_none() {
+        terminal::note(&format!(
+            "{} has no delays and residuals of an identification: each log gives its own, so a contact that lasts hides itself",
+            source.name()
+        ));
+    }
+    let (delays, spreads) = baseline.map(|of| (of.delays, of.spreads)).unzip();
     let model = Model {
         pi: (&arm.combination * arm.nominal()).as_slice().to_vec(),
         friction: arm.joints.iter().map(|joint| joint.friction.map(Option::unwrap_or_default)).collect(),
@@ -286,8 +301,9 @@ fn judged(arm: &Arm, logs: Vec<Log>, asked: &Asked, chosen: &Options, mut findin
         delays: chosen
             .delay
             .as_ref()
-            .map(|given| (0..arm.dof()).map(|j| given.get(j).or(given.first()).copied().unwrap_or(0.0)).collect()),
-        spreads: None,
+            .map(|given| (0..arm.dof()).map(|j| given.get(j).or(given.first()).copied().unwrap_or(0.0)).collect())
+            .or(delays),
+        spreads,
         covariance: None,
     };
     let mut validation = Vec::new();
@@ -342,6 +358,12 @@ fn percent(x: f64) -> String {
     format!("{:.2} %", 100.0 * x)
 }
 
+/// In ms, to a hundredth.
+fn milliseconds(seconds: f64) -> String {
+    // No zero has a sign.
+    format!("{:.2}", (1e5 * seconds).round() / 100.0 + 0.0)
+}
+
 fn range(of: &Interval) -> [String; 2] {
     let range = if of.excited && of.sigma > 0.0 { format!("{} to {}", short(of.low), short(of.high)) } else { "kept".into() };
     [short(of.value), range]
@@ -385,6 +407,16 @@ fn table(arm: &Arm, inputs: &[Input], found: &Identified, validation: &[(String,
         }
         text += &format!("\n{}", gains.text());
     }
+    let mut delays = Table::new([("joint", Left), ("delay", Point), ("3 sigma", Left)]);
+    for (joint, delay) in arm.joints.iter().zip(&found.delays) {
+        let range = match (delay.excited, delay.sigma > 0.0) {
+            (false, _) => "not determined".to_owned(),
+            (true, false) => "given".to_owned(),
+            (true, true) => format!("{} to {}", milliseconds(delay.low), milliseconds(delay.high)),
+        };
+        delays.row([joint.name.clone(), format!("{} ms", milliseconds(delay.value)), range]);
+    }
+    text += &format!("\n{}", delays.text());
     for (log, ten) in &found.loads {
         let mut load = Table::new([("load", Left), ("value", Point), ("3 sigma", Left)]);
         for (name, value) in armgen_identify::body::NAMES.iter().zip(ten) {
@@ -442,7 +474,7 @@ fn residuals<'j>(arm: &Arm, kind: &str, all: impl Iterator<Item = (&'j str, &'j 
         ]);
         for (j, joint) in arm.joints.iter().enumerate() {
             let unit = if joint.slides { "N" } else { "N m" };
-            let delay = if delays_are_new { format!("{:.1} ms", 1e3 * of.delays[j]) } else { String::new() };
+            let delay = if delays_are_new { format!("{} ms", milliseconds(of.delays[j])) } else { String::new() };
             let [residual, whole, moving] = [short(of.rms[j]), percent(of.relative[j]), percent(of.moving[j])];
             table.row([joint.name.clone(), residual, unit.to_owned(), whole, moving, delay]);
         }

@@ -82,6 +82,64 @@ fn a_planned_motion_identifies_an_arm_and_its_numbers_are_verified() {
     check(&["verify", text(&identified), text(&certificate)], 1);
 }
 
+/// A log with a column changed by a function of the stamp and the value, and with its torques later by some samples.
+fn changed(log: &str, column: &str, later: usize, change: impl Fn(f64, f64) -> f64) -> String {
+    let rows: Vec<Vec<&str>> = log.lines().map(|line| line.split(',').collect()).collect();
+    let place = rows[0].iter().position(|name| *name == column);
+    let mut text = rows[0].join(",") + "\n";
+    for (k, row) in rows.iter().enumerate().skip(1) {
+        let cell = |(i, cell): (usize, &&str)| match rows[0][i].starts_with("tau_") {
+            true => {
+                let value: f64 = rows[k.saturating_sub(later).max(1)][i].parse().expect("a number");
+                format!("{:.7}", if Some(i) == place { change(row[0].parse().expect("a number"), value) } else { value })
+            }
+            false => (*cell).to_owned(),
+        };
+        text += &(row.iter().enumerate().map(cell).collect::<Vec<_>>().join(",") + "\n");
+    }
+    text
+}
+
+/// A contact that lasts longer than the rest of its log, and a late clock, are seen against what the file keeps of its identification.
+#[test]
+fn a_file_alone_judges_a_log_by_what_it_keeps() {
+    let folder = folder("judged");
+    let [arm, motion, run, identified, log, report] =
+        ["arm.yaml", "motion.csv", "motion.log.csv", "identified.yaml", "log.csv", "report"].map(|name| folder.join(name));
+    fs::write(&arm, ARM).expect("a file");
+    check(&["excite", text(&arm), "--out", text(&motion), "--duration", "20", "--simulate", text(&arm), "--noise", "1"], 0);
+    check(&["identify", text(&arm), text(&run), "--out", text(&identified)], 0);
+    let judged = |file: &Path, content: &str| -> (Value, String) {
+        fs::write(&log, content).expect("a file");
+        let output = check(&["identify", text(file), "--validate", text(&log), "--report", text(&report)], 0);
+        let read = fs::read_to_string(report.join("report.json")).expect("a report");
+        (serde_json::from_str::<Value>(&read).expect("JSON")["validation"][0].clone(), err(&output).to_owned())
+    };
+    let free = fs::read_to_string(&run).expect("a log");
+    let (own, said) = judged(&identified, &free);
+    assert!(own["contacts"] == serde_json::json!([]) && said.is_empty(), "{own} {said}");
+    let pushed = changed(&free, "tau_shoulder", 0, |t, tau| if (4.0..16.0).contains(&t) { tau + 6.0 } else { tau });
+    let (of, _) = judged(&identified, &pushed);
+    let contacts = of["contacts"].as_array().expect("a list");
+    let end = |key: &str| contacts[0][key].as_f64().expect("a number");
+    assert!(contacts.len() == 1 && (end("from") - 4.0).abs() < 0.2 && (end("to") - 16.0).abs() < 0.2, "{contacts:?}");
+    assert_eq!((&of["delay"], &contacts[0]["joints"]), (&own["delay"], &serde_json::json!(["shoulder"])));
+    let (late, _) = judged(&identified, &changed(&free, "", 2, |_, tau| tau));
+    assert_eq!(late["delay"], own["delay"]);
+    assert!(late["moving"][0].as_f64() > own["moving"][0].as_f64().map(|x| 1.5 * x), "{late} {own}");
+    // A file without these lines takes both from the log, and says so.
+    let (of, said) = judged(&arm, &pushed);
+    assert!(said.contains("note: ") && said.contains("no delays and residuals of an identification"), "{said}");
+    assert_ne!(of["contacts"].as_array().map(Vec::len), Some(1));
+    let faulty = folder.join("faulty.yaml");
+    fs::write(&faulty, fs::read_to_string(&identified).expect("a file").replace(" ms, residual ", " ms residual "))
+        .expect("a file");
+    let refused = check(&["identify", text(&faulty), "--validate", text(&log)], 1);
+    let line = 1 + ARM.lines().count();
+    assert!(err(&refused).contains("error[bad-baseline]: `delay"), "{}", err(&refused));
+    assert!(err(&refused).contains(&format!("faulty.yaml:{line}:30")), "{}", err(&refused));
+}
+
 #[test]
 fn a_motion_that_is_not_there_has_its_reason() {
     let folder = folder("excite");

@@ -1,7 +1,7 @@
 //! Noise of positions is noise of the columns too, and bends least squares towards 0.
 //!
 //! With the reference of the drives in the log, columns along it are instruments: they follow those of the motion, and share none of their
-//! noise (Janot, Vandanjon and Gautier, IEEE T-CST 22, 2014). Without it, the same equations at half the cutoff must agree:
+//! noise (Janot, Vandanjon and Gautier, IEEE T-CST 22, 2014). Columns of dry friction are those along it. Without it, the same equations at half the cutoff must agree:
 //! less of such noise passes, so an estimate that noise bends moves.
 //!
 //! ```text
@@ -11,17 +11,27 @@
 
 use nalgebra::{DMatrix, DVector};
 
-use crate::estimate::Estimate;
+use crate::estimate::{Column, Estimate};
 use crate::fit::{block_length, reach, scores, solve, Equations, Gram, Solution, Sums};
+use crate::prepare::Friction;
 use crate::signal::LowPass;
 
 impl Estimate<'_> {
-    /// Equations with the active columns of others in the space of their instruments; the right-hand side stays.
-    pub(crate) fn with_instruments(&self, equations: &Equations) -> Option<Equations> {
+    /// Equations with the active columns of others in the space of their instruments; the right-hand side stays. Dry friction is not linear
+    /// in the rate, so the equations themselves get its columns along the reference.
+    pub(crate) fn with_instruments(&self, equations: &mut Equations) -> Option<Equations> {
         let pieces = self.along_reference?;
         let mut along = Estimate { pieces, along_reference: None, ..self.clone() };
         along.renew_sizes();
         let (instruments, _) = along.equations(None);
+        let is_dry = |place: &usize| {
+            matches!(self.columns[*place], Column::Friction(_, _, Friction::Coulomb | Friction::Load | Friction::Stribeck))
+        };
+        for &place in self.active.iter().filter(|place| is_dry(place)) {
+            for k in 0..equations.rows.len() {
+                equations.a[k * equations.columns + place] = instruments.row(k)[place];
+            }
+        }
         let n = self.active.len();
         let gram = Sums::new(&instruments, &self.active).gram(&self.weights);
         let mut mixed = DMatrix::zeros(n, n);

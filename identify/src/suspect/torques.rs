@@ -16,31 +16,30 @@ use crate::log::Log;
 use crate::prepare::{Friction, Piece};
 use crate::signal::rms;
 
+use super::states::{reading, Reading};
+
 /// Joints whose signs are tried in all patterns.
 const SIGNS: usize = 10;
-
-/// States that exchanged joints are compared by.
-const STATES: usize = 400;
 
 /// States at which mean inertias are taken.
 const INERTIAS: usize = 12;
 
 /// Sums of the equations of an estimate, by joint of the row and joint of the torque.
-struct Sides {
-    equations: Equations,
+pub(super) struct Sides {
+    pub(super) equations: Equations,
     /// By row, 1 or 0.
     counts: Vec<f64>,
-    active: Vec<usize>,
+    pub(super) active: Vec<usize>,
     size: Vec<f64>,
     h: Vec<DMatrix<f64>>,
     cross: Vec<Vec<DVector<f64>>>,
     squares: Vec<Vec<f64>>,
     /// Rows that give what is at least 0, over the active columns.
-    inequalities: DMatrix<f64>,
+    pub(super) inequalities: DMatrix<f64>,
 }
 
 /// An order of the torques: the solution of each joint's torque alone, and what the inequalities need.
-struct Trial<'s> {
+pub(super) struct Trial<'s> {
     sides: &'s Sides,
     order: Vec<usize>,
     inverse: DMatrix<f64>,
@@ -48,17 +47,18 @@ struct Trial<'s> {
     products: DMatrix<f64>,
     squares: f64,
     values: DMatrix<f64>,
-    dual: DMatrix<f64>,
+    /// The inverse of the equations over the inequalities.
+    pub(super) dual: DMatrix<f64>,
 }
 
 /// A fit: the sum of squares and the solution.
-struct Fit {
-    cost: f64,
-    x: DVector<f64>,
+pub(super) struct Fit {
+    pub(super) cost: f64,
+    pub(super) x: DVector<f64>,
 }
 
 impl Sides {
-    fn new(estimate: &Estimate<'_>) -> Sides {
+    pub(super) fn new(estimate: &Estimate<'_>) -> Sides {
         let n = estimate.arm.dof();
         let (equations, _) = estimate.equations(None);
         let active = estimate.active.clone();
@@ -89,7 +89,7 @@ impl Sides {
         1.0 / (self.size[order[j]] * self.size[order[j]])
     }
 
-    fn trial(&self, order: &[usize]) -> Trial<'_> {
+    pub(super) fn trial(&self, order: &[usize]) -> Trial<'_> {
         let n = self.size.len();
         let mut gram = Gram::zero(self.active.len());
         let mut squares = 0.0;
@@ -139,12 +139,12 @@ impl Trial<'_> {
         Fit { cost, x }
     }
 
-    fn plain(&self) -> Fit {
+    pub(super) fn plain(&self) -> Fit {
         self.fit(&vec![1.0; self.order.len()])
     }
 
     /// Weighted residuals, row by row.
-    fn residuals(&self, signs: &[f64], x: &DVector<f64>) -> Vec<f64> {
+    pub(super) fn residuals(&self, signs: &[f64], x: &DVector<f64>) -> Vec<f64> {
         let (equations, n) = (&self.sides.equations, self.order.len());
         (0..equations.rows.len())
             .map(|k| {
@@ -159,24 +159,39 @@ impl Trial<'_> {
 
 /// Whether residuals are smaller than those before: by more than what is left of some joints, and by more than three standard errors of the
 /// difference, from stretches of time that hardly know one another.
-fn is_better(equations: &Equations, before: &[f64], after: &[f64], joints: &[usize], n: usize) -> bool {
-    let ones = vec![1.0; after.len()];
-    let length = block_length(equations, after, &ones, n);
-    let mut gains: Vec<f64> = Vec::new();
-    let mut block: Option<(usize, f64)> = None;
-    let mut left = 0.0;
-    for (k, row) in equations.rows.iter().enumerate() {
-        if !block.is_some_and(|(log, start)| log == row.log && (0.0..length).contains(&(row.time - start))) {
-            block = Some((row.log, row.time));
-            gains.push(0.0);
+pub(super) fn is_better(equations: &Equations, before: &[f64], after: &[f64], joints: &[usize], n: usize) -> bool {
+    let gain = Gain::of(equations, before, after, joints, n);
+    gain.sum > gain.left && gain.sum > 3.0 * gain.error
+}
+
+/// How much smaller the squares of residuals are.
+pub(super) struct Gain {
+    pub(super) sum: f64,
+    /// The standard error of the sum; infinite for a single stretch of time.
+    pub(super) error: f64,
+    /// The squares that are left of some joints.
+    pub(super) left: f64,
+}
+
+impl Gain {
+    pub(super) fn of(equations: &Equations, before: &[f64], after: &[f64], joints: &[usize], n: usize) -> Gain {
+        let ones = vec![1.0; after.len()];
+        let length = block_length(equations, after, &ones, n);
+        let mut gains: Vec<f64> = Vec::new();
+        let mut block: Option<(usize, f64)> = None;
+        let mut left = 0.0;
+        for (k, row) in equations.rows.iter().enumerate() {
+            if !block.is_some_and(|(log, start)| log == row.log && (0.0..length).contains(&(row.time - start))) {
+                block = Some((row.log, row.time));
+                gains.push(0.0);
+            }
+            *gains.last_mut().expect("a block") += before[k] * before[k] - after[k] * after[k];
+            if joints.contains(&row.joint) {
+                left += after[k] * after[k];
+            }
         }
-        *gains.last_mut().expect("a block") += before[k] * before[k] - after[k] * after[k];
-        if joints.contains(&row.joint) {
-            left += after[k] * after[k];
-        }
+        Gain { sum: gains.iter().sum(), error: if gains.len() > 1 { error_of_sum(&gains) } else { f64::INFINITY }, left }
     }
-    let gain: f64 = gains.iter().sum();
-    gain > left && gains.len() > 1 && gain > 3.0 * error_of_sum(&gains)
 }
 
 /// What bodies and friction keep at least 0, as rows over the active columns: viscous and Coulomb friction, and the mean inertia of each joint.
@@ -251,27 +266,11 @@ pub fn torques(estimate: &Estimate<'_>, log: &Log, gains: &[f64], findings: &mut
         let Some(next) = next else { break };
         orders = Some(next);
     }
-    let exchanged = exchanged(estimate, gains);
+    let mut reading = reading(estimate, gains);
     let found = |fit: Option<&Fit>| fit.map_or(1.0, |fit| fit.cost / before.cost);
     let least = found(best.as_ref().map(|(fit, _)| fit)).min(found(orders.as_ref().map(|(fit, _)| fit)));
-    if let Some(exchanged) = exchanged.filter(|exchanged| exchanged.fall < least) {
-        let words = |&j: &usize| {
-            let rate = format!("dq_{}", name(j));
-            let effort = log.effort_column(name(j));
-            let columns = [Some(format!("q_{}", name(j))), log.dq.as_ref().map(|_| rate), exchanged.whole.then_some(effort)];
-            let columns: Vec<String> = columns.into_iter().flatten().collect();
-            format!("{} hold those of {}", columns.join(", "), name(exchanged.order[j]))
-        };
-        // The columns under a name are those of the joint whose states they fit.
-        let moved: Vec<usize> = (0..n).filter(|&j| exchanged.order[j] != j).collect();
-        let fall = 100.0 * exchanged.fall.sqrt();
-        let text = format!(
-            "the residual falls to {fall:.0} % with other joints: {}",
-            moved.iter().map(words).collect::<Vec<_>>().join("; ")
-        );
-        let help = "rename the columns under `columns` of the options";
-        let column = format!("q_{}", name(moved[0]));
-        findings.push(Finding::new(Code::JointOrder, &log.name, text, help).in_column(column));
+    if let Some(reading) = reading.take_if(|reading| reading.is_clear(least)) {
+        findings.push(reading.told(estimate.arm, log));
         return true;
     }
     // Of both that which explains more.
@@ -315,69 +314,8 @@ pub fn torques(estimate: &Estimate<'_>, log: &Log, gains: &[f64], findings: &mut
             return true;
         }
     }
-    false
-}
-
-/// Joints whose states, or whose states and torques, fit under other names.
-struct Exchanged {
-    order: Vec<usize>,
-    whole: bool,
-    /// The sum of squares over that of the log's own order.
-    fall: f64,
-}
-
-/// The exchange of states, or of states and torques, that explains most, where it explains clearly more.
-fn exchanged(estimate: &Estimate<'_>, gains: &[f64]) -> Option<Exchanged> {
-    let n = estimate.arm.dof();
-    let same: Vec<usize> = (0..n).collect();
-    let ones = vec![1.0; n];
-    let all: usize = estimate.pieces.iter().map(|piece| piece.kept.len()).sum();
-    let step = (all / STATES).max(1);
-    let sides = |order: &[usize], whole: bool| {
-        let torque = |j: usize| if whole { (order[j], gains[j] / gains[order[j]]) } else { (j, 1.0) };
-        let torques: Vec<(usize, f64)> = (0..n).map(torque).collect();
-        let pieces: Vec<Piece> =
-            estimate.pieces.iter().map(|piece| piece.exchanged(estimate.arm, order, &torques, step)).collect();
-        Sides::new(&Estimate {
-            pieces: &pieces,
-            along_reference: None,
-            delays: vec![0.0; n],
-            sizes: vec![Vec::new(); pieces.len()],
-            ..estimate.clone()
-        })
-    };
-    let own = sides(&same, true);
-    let before = own.trial(&same).plain();
-    let left = own.trial(&same).residuals(&ones, &before.x);
-    let mut found: Option<Exchanged> = None;
-    for whole in [true, false] {
-        let mut from = same.clone();
-        let (mut least, mut rest) = (before.cost, left.clone());
-        // From the best exchange on, exchanges that help clearly further.
-        loop {
-            let mut next: Option<(f64, Vec<usize>)> = None;
-            for (i, k) in (0..n).flat_map(|i| (i + 1..n).map(move |k| (i, k))) {
-                let mut order = from.clone();
-                order.swap(i, k);
-                let cost = sides(&order, whole).trial(&same).plain().cost;
-                if cost < next.as_ref().map_or(least, |(cost, _)| *cost) {
-                    next = Some((cost, order));
-                }
-            }
-            let Some((cost, order)) = next else { break };
-            let other = sides(&order, whole);
-            let trial = other.trial(&same);
-            let after = trial.residuals(&ones, &trial.plain().x);
-            let moved: Vec<usize> = (0..n).filter(|&j| order[j] != from[j]).collect();
-            if !is_better(&own.equations, &rest, &after, &moved, n) {
-                break;
-            }
-            (least, from, rest) = (cost, order, after);
-        }
-        let fall = least / before.cost;
-        if from != same && found.as_ref().is_none_or(|found| fall < found.fall) {
-            found = Some(Exchanged { order: from, whole, fall });
-        }
-    }
-    found
+    reading.filter(Reading::is_left).is_some_and(|reading| {
+        findings.push(reading.told(estimate.arm, log));
+        reading.is_certain
+    })
 }
