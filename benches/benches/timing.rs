@@ -120,4 +120,5 @@ fn main() {
     measure("UR5, friction", &chain::ur5(), UR5_LIMITS, [3.0; 6]);
     measure("Panda", &chain::panda().without_friction(), PANDA_LIMITS, panda);
     measure("Panda, friction", &chain::panda(), PANDA_LIMITS, panda);
+    measure("Panda, all friction", &chain::panda().with_curved_friction(PANDA_LIMITS, 0.2, 0.1), PANDA_LIMITS, panda);
 }

@@ -1,6 +1,7 @@
 //! `armgen time`: exact optima, a real arm, curves.
 
 use std::fs;
+use std::path::PathBuf;
 
 use serde_json::Value;
 
@@ -60,9 +61,15 @@ const SCARA_PATH: &str = "points: [[0, 0.5, 0.1, 0], [1, 1, 0.2, 1], [-0.5, 1.5,
 limits: {velocity: [4, 5, 1.2, 12], effort: [250, 120, 400, 30]}
 ";
 
+/// A folder of the test that runs: several time the same arms at the same time.
+fn own_folder(name: &str) -> PathBuf {
+    let thread = std::thread::current();
+    folder(&format!("{}-{name}", thread.name().unwrap_or_default().replace("::", "-")))
+}
+
 /// Standard output, standard error and timing.json of a path; `code` is the exit code.
 fn timed(name: &str, robot: &str, path: &str, options: &[&str], code: i32) -> (String, String, Value) {
-    let folder = folder(&format!("time-{name}"));
+    let folder = own_folder(name);
     let [arm, at, json] = ["robot.yaml", "path.yaml", "timing.json"].map(|file| folder.join(file));
     fs::write(&arm, robot).expect("a file");
     fs::write(&at, path).expect("a file");

@@ -4,11 +4,11 @@ use std::fs;
 
 use serde_json::Value;
 
-use super::{armgen, err, file, folder, number, numbers, out, timed, CRANE, PENDULUM, SCARA_PATH, SLIDE};
+use super::{armgen, err, file, number, numbers, out, own_folder, timed, CRANE, PENDULUM, SCARA_PATH, SLIDE};
 
 /// The answer of `armgen verify` on a timing; "" where it is proved.
 pub(super) fn refused(name: &str, robot: &str, timing: &Value) -> String {
-    let folder = folder(&format!("time-verify-{name}"));
+    let folder = own_folder(&format!("verify-{name}"));
     let [arm, json] = ["robot.yaml", "timing.json"].map(|file| folder.join(file));
     fs::write(&arm, robot).expect("a file");
     fs::write(&json, timing.to_string()).expect("a file");
