@@ -1,6 +1,7 @@
 //! Logs that are not what they seem: other units, other orders, other signs, frozen columns, torques at a limit.
 
 mod rates;
+mod sides;
 mod states;
 mod torques;
 

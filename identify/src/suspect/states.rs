@@ -5,7 +5,7 @@
 
 use armgen_codegen::diagnostic::Severity;
 
-use super::torques::{is_better, Fit, Gain, Sides};
+use super::sides::{is_better, Fit, Gain, Sides};
 use crate::arm::Arm;
 use crate::estimate::{Column, Estimate};
 use crate::finding::{Code, Finding};
