@@ -179,6 +179,8 @@ mod tests {
                 "a/arm_bounds.rs",
                 "a/arm_runtime.rs",
                 "a/arm_test.rs",
+                "a/arm_laws_c.rs",
+                "a/arm_laws.h",
                 "a/arm_c.rs",
                 "a/arm.h"
             ]

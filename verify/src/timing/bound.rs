@@ -292,4 +292,50 @@ mod tests {
         }
         assert!(ends > 500, "{ends}");
     }
+
+    /// A slide with all friction along q, of which x and the barriers do not matter here.
+    fn slide(coefficients: &str, s: &str) -> Checker {
+        let text = "name: slide\nconvention: standard\ngravity: [0, 0, 0]\njoints:\n  - {name: slide, type: prismatic, a: 0, alpha: 0, d: 0, \
+                    theta: 0, friction: {viscous: 1.5, coulomb: 1, cubic: 0.4, stribeck: {torque: 2, velocity: 0.3}}, \
+                    link: {mass: 2, com: [0, 0, 0], inertia: {}}}\n";
+        let source = armgen_description::source::Source::new("slide", text);
+        let (manipulator, _) = armgen_codegen::validate::read(&source).0.expect("a valid arm");
+        let file = format!(
+            r#"{{"joints": ["slide"], "path": {{"knots": [0, 1], "coefficients": [[{coefficients}]]}}, "ends": {{"speed": [0, 0]}},
+            "limits": {{"velocity": [5], "acceleration": [3], "effort": [[-10, 10]]}}, "duration": 1, "lower_bound": 1,
+            "grid": {{"s": {s}, "t": {s}, "x": {s}, "k": [0, 0, 0]}}, "bound": {{"direction": [null, null, null],
+            "x0": [0, 0, 0], "x2": [0, 0, 0], "k": [0, 0, 0], "row": ["", "", ""], "also": []}}}}"#
+        );
+        Checker::new(&manipulator, super::super::file::File::read(&file).expect("a file")).expect("a slide")
+    }
+
+    /// 2 u + F(v) <= 10 and u >= -3 exclude all v with F(v) > 16.
+    #[test]
+    fn two_rows_with_curves_exclude_what_no_acceleration_keeps() {
+        let checker = slide("[0, 1]", "[0, 0.25, 0.75, 1]");
+        let functions: Vec<Functions> = (0..3).map(|i| checker.functions(i).expect("functions")).collect();
+        let friction = |v: f64| 1.5 * v + 1.0 + 0.4 * v.powi(3) + 2.0 * (-v / 0.3).exp();
+        let (mut low, mut high) = (0.0, 5.0);
+        for _ in 0..60 {
+            let middle = 0.5 * (low + high);
+            *if friction(middle) > 16.0 { &mut high } else { &mut low } = middle;
+        }
+        for node in 0..4 {
+            assert!(checker.excludes(&functions, node, high * high * 1.001), "{node}");
+            assert!(!checker.excludes(&functions, node, high * high * 0.999), "{node}");
+        }
+    }
+
+    /// q = s² - s turns round at 0.5: of the torque there nothing is known.
+    #[test]
+    fn nothing_is_proved_of_a_joint_that_turns_round_within_a_segment() {
+        let checker = slide("[0, -1, 1]", "[0, 0.25, 0.75, 1]");
+        for (i, known) in [true, false, true].into_iter().enumerate() {
+            let of = checker.functions(i).expect("functions");
+            for kind in [Kind::TorqueHigh, Kind::TorqueLow] {
+                let row = checker.row(&of, 0, kind).expect("a limit");
+                assert_eq!((row.curve.is_some(), row.d.rest != Range::ALL), (known, known), "{i}");
+            }
+        }
+    }
 }
