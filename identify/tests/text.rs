@@ -218,7 +218,7 @@ fn odd(seed: u64) -> (String, bool) {
 /// The text without our comments.
 fn without_comments(text: &str) -> String {
     let mut left = String::new();
-    for line in text.split_inclusive(['\n', '\r']) {
+    for line in text.split_inclusive(['\n', '\r']).filter(|line| !line.starts_with("# identified joint ")) {
         match line.find(" # identified: ") {
             Some(at) => left += &[&line[..at], line[at..].trim_start_matches(|c| c != '\n' && c != '\r')].concat(),
             None => left += line,
