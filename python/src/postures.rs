@@ -154,8 +154,10 @@ pub(crate) fn solved<'py>(
 /// The entries of a single pose that is an array of float64 by rows already.
 fn entries(pose: &Bound<'_, PyAny>) -> Option<[[f64; 4]; 4]> {
     let pose: PyReadonlyArray2<'_, f64> = pose.extract().ok()?;
-    let (rows, _) = pose.as_slice().ok()?.as_chunks();
-    rows.try_into().ok().filter(|_| pose.shape() == [4, 4])
+    if pose.shape() != [4, 4] || !pose.is_c_contiguous() {
+        return None;
+    }
+    pose.as_slice().ok()?.as_chunks().0.try_into().ok()
 }
 
 /// Why a pose, or the redundancy beside it, has the verdict `Invalid`.
