@@ -448,8 +448,8 @@ impl<'a> Estimate<'a> {
         let (mut equations, _) = self.equations(None);
         let mut gram = self.fit(&equations);
         // The intervals allow for delays.
-        let own = self.active.clone();
-        self.active = self.with_delays();
+        let all = self.with_delays();
+        let own = std::mem::replace(&mut self.active, all);
         let projected = self.with_instruments(&mut equations);
         self.active = own;
         if let Some(projected) = &projected {

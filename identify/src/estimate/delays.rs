@@ -59,9 +59,8 @@ impl Estimate<'_> {
     /// interval; infinite where the logs do not show it, none where it is given.
     pub fn settle(&mut self) -> Vec<Option<[f64; 2]>> {
         let n = self.arm.dof();
-        let own = std::mem::take(&mut self.active);
-        self.active.clone_from(&own);
-        self.active = self.with_delays();
+        let all = self.with_delays();
+        let own = std::mem::replace(&mut self.active, all);
         let mut errors = vec![None; n];
         for round in 0..STEPS {
             let (mut equations, _) = self.equations(None);
