@@ -102,6 +102,8 @@ codes! {
         RepeatedElement Warning "repeated-element",
         /// A last joint that seems to open a gripper.
         FingerAsTip Warning "finger-as-tip",
+        /// An arm that ends before its fingers, which rest.
+        FingersAtRest Warning "fingers-at-rest",
         /// An omitted part that would change the motion.
         ChangesMotion Warning "changes-motion",
     }

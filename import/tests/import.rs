@@ -437,6 +437,57 @@ fn leaves_on_earlier_links_of_a_series_are_parts_of_them() {
     }
 }
 
+/// A hand with several fingers ends the arm, as `--tip` at it does; where a branch may be meant otherwise, the user chooses.
+#[test]
+fn an_arm_ends_before_the_fingers_of_its_hand() {
+    let inertial = "<inertial><mass value='1'/><inertia ixx='1' iyy='1' izz='1' ixy='0' ixz='0' iyz='0'/></inertial>";
+    let link = |name: &str| format!("<link name='{name}'>{inertial}</link>");
+    let joint = |name: &str, kind: &str, parent: &str, child: &str, more: &str| {
+        let axis = if name.len() % 2 == 0 { "0 1 0" } else { "1 0 0" };
+        let ends = format!("<parent link='{parent}'/><child link='{child}'/>");
+        format!("<joint name='{name}' type='{kind}'>{ends}<axis xyz='{axis}'/><origin xyz='0 0 1'/>{more}</joint>")
+    };
+    // Names of joints and links of both fingers, what is fixed to the hand, what carries the hand, and the tip.
+    let cases = [
+        (["finger1", "finger2"], "", "wrist", Some("hand")),
+        (["gripper_left", "gripper_right"], "", "wrist", Some("hand")),
+        (["jaw_a", "jaw_b"], "tool0", "wrist", Some("tool0")),
+        (["finger1", "camera_pan"], "", "wrist", None),
+        (["left_arm", "right_arm"], "", "wrist", None),
+        (["finger1", "finger2"], "", "gripper_turn", None),
+        (["finger1", "finger2"], "", "", None),
+    ];
+    for (fingers, fixed, wrist, tip) in cases {
+        let mut text = link("b") + &link("hand");
+        let kind = if wrist.is_empty() { "fixed" } else { "continuous" };
+        text += &joint(if wrist.is_empty() { "mount" } else { wrist }, kind, "b", "hand", "");
+        for (k, finger) in fingers.iter().enumerate() {
+            let (knuckle, end) = (format!("{finger}_link"), format!("{finger}_end"));
+            text += &(link(&knuckle) + &link(&end));
+            let mimic = if k == 0 { String::new() } else { format!("<mimic joint='{}'/>", fingers[0]) };
+            text += &joint(finger, "continuous", "hand", &knuckle, &mimic);
+            text += &joint(&format!("{finger}_outer"), "continuous", &knuckle, &end, &format!("<mimic joint='{}'/>", fingers[0]));
+        }
+        if !fixed.is_empty() {
+            text += &(format!("<link name='{fixed}'/>") + &joint("fix", "fixed", "hand", fixed, ""));
+        }
+        let text = format!("<robot name='r'>{text}</robot>");
+        let source = Source::new("arm", text.as_str());
+        let (imported, diagnostics) = import(&source, &Options::default());
+        let said = diagnostics.render(&source, Colour::Never);
+        let Some(tip) = tip else {
+            assert!(imported.is_none() && said.contains("error[several-tips]"), "{fingers:?} {wrist}: {said}");
+            continue;
+        };
+        let imported = imported.unwrap_or_else(|| panic!("{fingers:?}: {said}"));
+        let warning = format!("the arm ends at `hand` (1 joint), before its fingers: `{}` rests at 0", fingers[0]);
+        assert!(said.contains(&warning) && said.contains("fingers-at-rest"), "{said}");
+        let (chosen, _) = import(&source, &Options { tip: Some(tip.to_owned()), ..Options::default() });
+        assert_eq!(chosen.expect("a chosen tip").yaml, imported.yaml);
+        assert_eq!(valid(&imported.yaml).dof(), 1);
+    }
+}
+
 /// One rule for both formats: the suggestion, copied, gives the arm without its finger; and so does that of the warning where there is no choice.
 #[test]
 fn the_suggested_tip_leaves_fingers_out() {

@@ -250,6 +250,7 @@ fn fingers_that_follow_are_left_out_by_their_leader() {
         joint("tool", "fixed", "wrist_link", ""),
         joint("finger", "prismatic", "wrist_link", ""),
         joint("other_finger", "prismatic", "wrist_link", "<mimic joint='finger' multiplier='-1'/>"),
+        joint("camera", "revolute", "wrist_link", ""),
     ]);
     let (none, diagnostics) = import(&source, &Options::default());
     let help = diagnostics.iter().map(|fault| fault.help.as_str()).collect::<String>();

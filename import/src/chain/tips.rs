@@ -58,11 +58,14 @@ pub(super) fn only(tree: &Tree, base: usize, locks: &Locks, diagnostics: &mut Di
     let mut groups = leaves(tree, base, locks);
     let mut notes = Vec::new();
     if groups.len() > 1 {
-        let Some(note) = keep_the_longest_of_a_series(tree, base, &mut groups) else {
+        if let Some(note) = keep_the_longest_of_a_series(tree, base, &mut groups) {
+            notes.push(note);
+        } else if let Some(warning) = keep_the_arm_before_its_fingers(tree, base, locks, &mut groups) {
+            diagnostics.push(warning);
+        } else {
             diagnostics.push(several(tree, base, locks, &groups));
             return None;
-        };
-        notes.push(note);
+        }
     }
     let Some((&last, leaves)) = groups.iter().next() else {
         let message = format!("nothing moves below `{}`", shown(&tree.links[base].name));
@@ -228,6 +231,61 @@ fn keep_the_longest_of_a_series(tree: &Tree, base: usize, groups: &mut BTreeMap<
     ))
 }
 
+/// Where all branches are fingers of one hand, no finger is the end effector: keeps the hand, with a warning of the joints that rest.
+///
+/// A single finger may be meant as the last joint, and other branches may be arms: these leave the choice to the user.
+fn keep_the_arm_before_its_fingers(
+    tree: &Tree,
+    base: usize,
+    locks: &Locks,
+    groups: &mut BTreeMap<usize, Vec<Candidate>>,
+) -> Option<Diagnostic> {
+    let moves = |joint: usize| tree.joints[joint].kind.moves() && locks.of(joint).is_none();
+    let ends: Vec<Candidate> = groups.iter().filter(|(&last, _)| is_finger(tree, last)).map(|(_, leaves)| leaves[0]).collect();
+    let (first, others) = ends.split_first().filter(|(_, others)| !others.is_empty())?;
+    let mut common = tree.path(base, first.link)?;
+    for end in others {
+        let path = tree.path(base, end.link)?;
+        let same = common.iter().zip(&path).take_while(|(a, b)| a == b).count();
+        common.truncate(same);
+    }
+    let last = common.iter().copied().rfind(|&joint| moves(joint)).filter(|&joint| !is_finger(tree, joint))?;
+    let link = common.last().map(|&joint| tree.joints[joint].child).filter(|&link| tree.links[link].role != Role::Between)?;
+    if groups.keys().any(|&other| other != last && !is_finger(tree, other)) {
+        return None;
+    }
+    let joints = common.iter().filter(|&&joint| moves(joint)).count();
+    let hand = groups.remove(&last).unwrap_or_else(|| vec![Candidate { link, last, joints }]);
+    *groups = BTreeMap::from([(last, hand)]);
+    let fingers = fingers(tree, locks, ends.iter().map(|end| end.last));
+    let name = |&joint: &usize| shown(&tree.joints[joint].name);
+    let named: Vec<String> = fingers.iter().take(NAMED).map(|joint| format!("`{}`", name(joint))).collect();
+    let more = if fingers.len() > NAMED { ", ..." } else { "" };
+    let rest = if fingers.len() == 1 { "rests" } else { "rest" };
+    let message = format!(
+        "the arm ends at `{}` ({}), before its fingers: {}{more} {rest} at 0",
+        shown(&tree.links[link].name),
+        number(joints),
+        named.join(", ")
+    );
+    let help =
+        format!("`--lock {}=VALUE` puts a finger elsewhere; `--all` takes all in, and `--tip LINK` one", name(&fingers[0]));
+    Some(Diagnostic::new(Code::FingersAtRest, tree.links[link].span, message, "the hand", help))
+}
+
+/// The joints that hold the fingers behind these joints where they are, each once: a follower rests with its leader.
+fn fingers(tree: &Tree, locks: &Locks, lasts: impl Iterator<Item = usize>) -> Vec<usize> {
+    let mut fingers: Vec<usize> = Vec::new();
+    for last in lasts {
+        let decisive = locks.decisive(last);
+        let joint = if is_finger(tree, decisive) && tree.joints[decisive].kind.moves() { decisive } else { last };
+        if !fingers.contains(&joint) {
+            fingers.push(joint);
+        }
+    }
+    fingers
+}
+
 /// The refusal of a file with several links that may be the tip, and the best of them: the frame of a tool; else the link before the fingers;
 /// else the longest chain.
 fn several(tree: &Tree, base: usize, locks: &Locks, groups: &BTreeMap<usize, Vec<Candidate>>) -> Diagnostic {
@@ -240,15 +298,7 @@ fn several(tree: &Tree, base: usize, locks: &Locks, groups: &BTreeMap<usize, Vec
     chains.sort_by_key(|(chain, _)| std::cmp::Reverse(chain.joints));
     let tools = chains.iter().map(|(chain, _)| *chain).filter(|chain| !is_finger(tree, chain.last));
     let tool = tools.filter_map(|chain| Some((names::tool(&tree.links[chain.link].name)?, chain))).min_by_key(|(rank, _)| *rank);
-    // A follower rests with its leader.
-    let mut fingers: Vec<usize> = Vec::new();
-    for (chain, _) in chains.iter().filter(|(chain, _)| is_finger(tree, chain.last)) {
-        let decisive = locks.decisive(chain.last);
-        let joint = if is_finger(tree, decisive) && tree.joints[decisive].kind.moves() { decisive } else { chain.last };
-        if !fingers.contains(&joint) {
-            fingers.push(joint);
-        }
-    }
+    let fingers = fingers(tree, locks, chains.iter().map(|(chain, _)| chain.last).filter(|&last| is_finger(tree, last)));
     let longest = chains[0].0;
     let branch = before_branches(tree, base, longest.link, locks);
     let other = chains.iter().map(|(chain, _)| *chain).find(|chain| !is_finger(tree, chain.last));
