@@ -21,7 +21,7 @@ use dashu_base::{Signed, SquareRoot, UnsignedAbs};
 use dashu_int::{IBig, UBig};
 
 use super::prime::{Prime, Residue};
-use super::tower::{add, invert, is_zero, multiply, negate, Tower};
+use super::tower::{Coordinates, Tower};
 use super::Arithmetic;
 use crate::element::Element;
 use crate::enclosure::enclose;
@@ -151,12 +151,12 @@ fn has_free_atoms(formula: &Formula) -> bool {
 }
 
 /// The number with these coordinates over the products of roots.
-fn in_roots(roots: &[Root], coordinates: &[Rational]) -> Formula {
-    let term = |(place, x): (usize, &Rational)| {
+fn in_roots(roots: &[Root], coordinates: &Coordinates) -> Formula {
+    let term = |(place, x): (usize, Rational)| {
         let factors = roots.iter().enumerate().filter(|(level, _)| place >> level & 1 == 1);
-        factors.fold(Formula::Rational(x.clone()), |term, (_, root)| term.times(&Formula::Root(root.clone())))
+        factors.fold(Formula::Rational(x), |term, (_, root)| term.times(&Formula::Root(root.clone())))
     };
-    let terms = coordinates.iter().enumerate().filter(|(_, x)| !x.is_zero()).map(term);
+    let terms = coordinates.fractions().enumerate().filter(|(_, x)| !x.is_zero()).map(term);
     terms.reduce(|a, b| a.plus(&b)).unwrap_or(Formula::Rational(Rational::ZERO))
 }
 
@@ -172,28 +172,31 @@ fn rational_root(x: &Rational) -> Option<Rational> {
 }
 
 /// A square root in a tower, if there is one: (u + v√d)² = x + y√d has u² = (x ± n)/2 with n² = x² - d y², and v = y/(2u).
-fn square_root(squares: &[Vec<Rational>], a: &[Rational]) -> Option<Vec<Rational>> {
-    if is_zero(a) {
-        return Some(a.to_vec());
+fn square_root(squares: &[Vec<IBig>], a: &Coordinates) -> Option<Coordinates> {
+    if a.is_zero() {
+        return Some(a.clone());
     }
-    let Some((d, below)) = squares.split_last() else { return Some(vec![rational_root(&a[0])?]) };
-    let (x, y) = a.split_at(a.len() / 2);
-    let nothing = vec![Rational::ZERO; x.len()];
-    if is_zero(y) {
-        if let Some(u) = square_root(below, x) {
-            return Some([u, nothing].concat());
+    let Some((d, below)) = squares.split_last() else {
+        return Some(Coordinates::rational(&rational_root(&a.fractions().next()?)?, 1));
+    };
+    let d = Coordinates::new(d.clone(), UBig::ONE);
+    let (x, y) = a.halves();
+    let rational = |value: &Rational| Coordinates::rational(value, 1 << below.len());
+    let nothing = rational(&Rational::ZERO);
+    if y.is_zero() {
+        if let Some(u) = square_root(below, &x) {
+            return Some(Coordinates::joined(&u, &nothing));
         }
-        let v = square_root(below, &multiply(below, x, &invert(below, d)?))?;
-        return Some([nothing, v].concat());
+        let v = square_root(below, &x.times(below, &d.inverse(below)?))?;
+        return Some(Coordinates::joined(&nothing, &v));
     }
-    let norm = add(&multiply(below, x, x), &negate(&multiply(below, &multiply(below, y, y), d)));
+    let norm = x.times(below, &x).plus(&y.times(below, &y).times(below, &d).negated());
     let n = square_root(below, &norm)?;
-    let half = Rational::from_parts(1.into(), 2u8.into());
-    let scaled = |a: &[Rational], k: &Rational| a.iter().map(|x| x * k).collect::<Vec<_>>();
-    [n.clone(), negate(&n)].into_iter().find_map(|n| {
-        let u = square_root(below, &scaled(&add(x, &n), &half)).filter(|u| !is_zero(u))?;
-        let v = multiply(below, y, &scaled(&invert(below, &u)?, &half));
-        Some([u, v].concat())
+    let half = rational(&Rational::from_parts(1.into(), 2u8.into()));
+    [n.clone(), n.negated()].into_iter().find_map(|n| {
+        let u = square_root(below, &x.plus(&n).times(below, &half)).filter(|u| !u.is_zero())?;
+        let v = y.times(below, &u.inverse(below)?.times(below, &half));
+        Some(Coordinates::joined(&u, &v))
     })
 }
 

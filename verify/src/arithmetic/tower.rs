@@ -2,12 +2,15 @@
 //!
 //! An element of the k-th field is a pair (x, y) of elements of the one below, x + y √ak, stored flat; products and inverses follow from
 //! (x + y√a)(u + v√a) = (xu + yv a) + (xv + yu)√a. Roots that follow from others are no levels of their own ([`super::roots`]).
+//! All coordinates share one denominator: a product of fractions reduces each of its 4^k parts, and so takes most of its time for divisors.
+//! The ak have integer coordinates: √(n/d) is √(nd)/d.
 
 use std::collections::BTreeMap;
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::sync::Arc;
 
-use dashu_base::{BitTest, Signed};
+use dashu_base::{BitTest, Gcd, Signed, UnsignedAbs};
+use dashu_int::{IBig, UBig};
 
 use super::Arithmetic;
 use crate::element::{scrambled, Element};
@@ -19,7 +22,7 @@ use crate::stream::Stream;
 #[derive(Debug)]
 struct Shared {
     /// The squares of the adjoined roots, each in the coordinates of the field below.
-    squares: Vec<Vec<Rational>>,
+    squares: Vec<Vec<IBig>>,
     /// How many products of words may still be formed; `UNLIMITED` are never used up.
     left: AtomicU64,
 }
@@ -27,7 +30,7 @@ struct Shared {
 const UNLIMITED: u64 = u64::MAX;
 
 impl Shared {
-    fn new(squares: Vec<Vec<Rational>>) -> Shared {
+    fn new(squares: Vec<Vec<IBig>>) -> Shared {
         Shared { squares, left: AtomicU64::new(UNLIMITED) }
     }
 
@@ -39,10 +42,18 @@ impl Shared {
     }
 }
 
+/// Coordinates over the products of the adjoined roots: the k-th bit of a place says whether the k-th root is a factor.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct Coordinates {
+    numerators: Vec<IBig>,
+    /// Without a factor that all numerators have.
+    denominator: UBig,
+}
+
 /// A number of the tower.
 #[derive(Clone, Debug)]
 pub struct Surd {
-    coordinates: Vec<Rational>,
+    coordinates: Coordinates,
     shared: Arc<Shared>,
 }
 
@@ -58,20 +69,168 @@ const MOST_PRODUCTS: u64 = 1 << 30;
 /// Numerator and denominator of the tangents of half the joint angles, of arms of up to eight joints.
 const LONGEST: u64 = 127;
 
+impl Coordinates {
+    pub(super) fn new(mut numerators: Vec<IBig>, mut denominator: UBig) -> Coordinates {
+        let common = common_factor(denominator.clone(), &numerators);
+        if !common.is_one() {
+            divide(&mut numerators, &common);
+            denominator /= common;
+        }
+        Coordinates { numerators, denominator }
+    }
+
+    /// A fraction among so many coordinates.
+    pub(super) fn rational(value: &Rational, count: usize) -> Coordinates {
+        let mut numerators = vec![IBig::ZERO; count];
+        numerators[0] = value.numerator().clone();
+        Coordinates { numerators, denominator: value.denominator().clone() }
+    }
+
+    /// Each as a fraction.
+    pub(super) fn fractions(&self) -> impl Iterator<Item = Rational> + '_ {
+        self.numerators.iter().map(|n| Rational::from_parts(n.clone(), self.denominator.clone()))
+    }
+
+    pub(super) fn is_zero(&self) -> bool {
+        is_zero(&self.numerators)
+    }
+
+    /// x and y of x + y√a.
+    pub(super) fn halves(&self) -> (Coordinates, Coordinates) {
+        let (x, y) = self.numerators.split_at(self.numerators.len() / 2);
+        let of = |numerators: &[IBig]| Coordinates::new(numerators.to_vec(), self.denominator.clone());
+        (of(x), of(y))
+    }
+
+    /// x + y√a.
+    pub(super) fn joined(x: &Coordinates, y: &Coordinates) -> Coordinates {
+        let of = |a: &Coordinates, b: &Coordinates| {
+            let factor = IBig::from(b.denominator.clone());
+            a.numerators.iter().map(move |n| n * &factor).collect::<Vec<_>>()
+        };
+        Coordinates::new([of(x, y), of(y, x)].concat(), &x.denominator * &y.denominator)
+    }
+
+    pub(super) fn plus(&self, other: &Coordinates) -> Coordinates {
+        if self.denominator == other.denominator {
+            return Coordinates::new(add(&self.numerators, &other.numerators), self.denominator.clone());
+        }
+        let common = (&self.denominator).gcd(&other.denominator);
+        let (own, others) = (&self.denominator / &common, &other.denominator / &common);
+        let scaled = |a: &[IBig], factor: &UBig| {
+            let factor = IBig::from(factor.clone());
+            a.iter().map(|n| n * &factor).collect::<Vec<_>>()
+        };
+        let mut numerators = add(&scaled(&self.numerators, &others), &scaled(&other.numerators, &own));
+        let mut denominator = own * &other.denominator;
+        // A factor of the rest of either denominator divides one term of the sum alone.
+        let shared = common_factor(common, &numerators);
+        if !shared.is_one() {
+            divide(&mut numerators, &shared);
+            denominator /= shared;
+        }
+        Coordinates { numerators, denominator }
+    }
+
+    pub(super) fn negated(&self) -> Coordinates {
+        Coordinates { numerators: negate(&self.numerators), denominator: self.denominator.clone() }
+    }
+
+    pub(super) fn times(&self, squares: &[Vec<IBig>], other: &Coordinates) -> Coordinates {
+        let numerators = multiply(squares, &self.numerators, &other.numerators);
+        Coordinates::new(numerators, &self.denominator * &other.denominator)
+    }
+
+    pub(super) fn inverse(&self, squares: &[Vec<IBig>]) -> Option<Coordinates> {
+        let (mut numerators, denominator) = invert(squares, &self.numerators)?;
+        let factor = IBig::from(self.denominator.clone());
+        numerators.iter_mut().for_each(|n| *n *= &factor);
+        if denominator.is_negative() {
+            numerators = negate(&numerators);
+        }
+        Some(Coordinates::new(numerators, denominator.unsigned_abs()))
+    }
+}
+
+/// The greatest common divisor of a number and all of these.
+fn common_factor(number: UBig, numerators: &[IBig]) -> UBig {
+    let mut common = number;
+    for n in numerators.iter().filter(|n| !n.is_zero()) {
+        if common.is_one() {
+            break;
+        }
+        common = common.gcd(n.unsigned_abs());
+    }
+    common
+}
+
+fn divide(numerators: &mut [IBig], factor: &UBig) {
+    let factor = IBig::from(factor.clone());
+    numerators.iter_mut().filter(|n| !n.is_zero()).for_each(|n| *n /= &factor);
+}
+
+fn is_zero(a: &[IBig]) -> bool {
+    a.iter().all(IBig::is_zero)
+}
+
+fn add(a: &[IBig], b: &[IBig]) -> Vec<IBig> {
+    a.iter().zip(b).map(|(a, b)| a + b).collect()
+}
+
+fn negate(a: &[IBig]) -> Vec<IBig> {
+    a.iter().map(|a| -a.clone()).collect()
+}
+
+fn multiply(squares: &[Vec<IBig>], a: &[IBig], b: &[IBig]) -> Vec<IBig> {
+    if is_zero(a) || is_zero(b) {
+        return vec![IBig::ZERO; a.len()];
+    }
+    let Some((square, below)) = squares.split_last() else { return vec![&a[0] * &b[0]] };
+    let ((x, y), (u, v)) = (a.split_at(a.len() / 2), b.split_at(a.len() / 2));
+    let (low, high) = (multiply(below, x, u), multiply(below, y, v));
+    let mixed = if is_zero(y) || is_zero(v) {
+        add(&multiply(below, x, v), &multiply(below, y, u))
+    } else {
+        // Three products instead of four: xv + yu = (x + y)(u + v) - xu - yv.
+        add(&multiply(below, &add(x, y), &add(u, v)), &negate(&add(&low, &high)))
+    };
+    let mut product = add(&low, &multiply(below, &high, square));
+    product.extend(mixed);
+    product
+}
+
+/// The inverse, and an integer that it is to be divided by.
+fn invert(squares: &[Vec<IBig>], a: &[IBig]) -> Option<(Vec<IBig>, IBig)> {
+    if is_zero(a) {
+        return None;
+    }
+    let Some((square, below)) = squares.split_last() else { return Some((vec![IBig::ONE], a[0].clone())) };
+    let (x, y) = a.split_at(a.len() / 2);
+    // 1/(x + y√a) = (x - y√a)/(x² - a y²)
+    let norm = add(&multiply(below, x, x), &negate(&multiply(below, &multiply(below, y, y), square)));
+    let (inverse, denominator) = invert(below, &norm)?;
+    let mut result = multiply(below, x, &inverse);
+    result.extend(negate(&multiply(below, y, &inverse)));
+    Some((result, denominator))
+}
+
 impl Surd {
-    /// Coordinates over the products of the adjoined roots: the k-th bit of a place says whether the k-th root is a factor.
-    pub fn coordinates(&self) -> &[Rational] {
+    pub(super) fn coordinates(&self) -> &Coordinates {
         &self.coordinates
     }
 
-    /// Words of 64 bits that its numerators and denominators take.
+    /// Words of 64 bits that its numerators and its denominator take.
     fn words(&self) -> u64 {
         self.bits() as u64 / 64 + 1
     }
 
     /// The squares of the adjoined roots.
-    pub fn squares(&self) -> &[Vec<Rational>] {
+    pub(super) fn squares(&self) -> &[Vec<IBig>] {
         &self.shared.squares
+    }
+
+    fn with(&self, coordinates: Coordinates) -> Surd {
+        Surd { coordinates, shared: self.shared.clone() }
     }
 }
 
@@ -81,94 +240,48 @@ impl PartialEq for Surd {
     }
 }
 
-pub(super) fn is_zero(a: &[Rational]) -> bool {
-    a.iter().all(Rational::is_zero)
-}
-
-pub(super) fn add(a: &[Rational], b: &[Rational]) -> Vec<Rational> {
-    a.iter()
-        .zip(b)
-        .map(|(a, b)| {
-            if a.is_zero() {
-                b.clone()
-            } else if b.is_zero() {
-                a.clone()
-            } else {
-                a + b
-            }
-        })
-        .collect()
-}
-
-pub(super) fn negate(a: &[Rational]) -> Vec<Rational> {
-    a.iter().map(|a| -a.clone()).collect()
-}
-
-pub(super) fn multiply(squares: &[Vec<Rational>], a: &[Rational], b: &[Rational]) -> Vec<Rational> {
-    if is_zero(a) || is_zero(b) {
-        return vec![Rational::ZERO; a.len()];
-    }
-    let Some((square, below)) = squares.split_last() else { return vec![&a[0] * &b[0]] };
-    let half = a.len() / 2;
-    let ((x, y), (u, v)) = (a.split_at(half), b.split_at(half));
-    let mut low = multiply(below, x, u);
-    if !is_zero(y) && !is_zero(v) {
-        low = add(&low, &multiply(below, &multiply(below, y, v), square));
-    }
-    low.extend(add(&multiply(below, x, v), &multiply(below, y, u)));
-    low
-}
-
-pub(super) fn invert(squares: &[Vec<Rational>], a: &[Rational]) -> Option<Vec<Rational>> {
-    if is_zero(a) {
-        return None;
-    }
-    let Some((square, below)) = squares.split_last() else { return Some(vec![Rational::ONE / &a[0]]) };
-    let (x, y) = a.split_at(a.len() / 2);
-    // 1/(x + y√a) = (x - y√a)/(x² - a y²)
-    let norm = add(&multiply(below, x, x), &negate(&multiply(below, &multiply(below, y, y), square)));
-    let inverse = invert(below, &norm)?;
-    let mut result = multiply(below, x, &inverse);
-    result.extend(negate(&multiply(below, y, &inverse)));
-    Some(result)
-}
-
 impl Element for Surd {
     fn plus(&self, other: &Self) -> Self {
-        Surd { coordinates: add(&self.coordinates, &other.coordinates), shared: self.shared.clone() }
+        self.with(self.coordinates.plus(&other.coordinates))
     }
     fn minus(&self, other: &Self) -> Self {
         self.plus(&other.negated())
     }
     fn times(&self, other: &Self) -> Self {
-        let coordinates = if self.shared.take(self.words() * other.words()) {
-            multiply(&self.shared.squares, &self.coordinates, &other.coordinates)
+        if self.shared.take(self.words() * other.words()) {
+            self.with(self.coordinates.times(&self.shared.squares, &other.coordinates))
         } else {
-            vec![Rational::ZERO; self.coordinates.len()]
-        };
-        Surd { coordinates, shared: self.shared.clone() }
+            self.with(Coordinates::rational(&Rational::ZERO, self.coordinates.numerators.len()))
+        }
     }
     fn bits(&self) -> usize {
-        self.coordinates.iter().map(|x| x.numerator().bit_len() + x.denominator().bit_len()).sum()
+        let Coordinates { numerators, denominator } = &self.coordinates;
+        numerators.iter().map(IBig::bit_len).sum::<usize>() + denominator.bit_len()
     }
     fn negated(&self) -> Self {
-        Surd { coordinates: negate(&self.coordinates), shared: self.shared.clone() }
+        self.with(self.coordinates.negated())
     }
     fn inverse(&self) -> Option<Self> {
-        Some(Surd { coordinates: invert(&self.shared.squares, &self.coordinates)?, shared: self.shared.clone() })
+        Some(self.with(self.coordinates.inverse(&self.shared.squares)?))
     }
     fn sign(&self) -> Self {
-        let Some(first) = self.coordinates.iter().find(|x| !x.is_zero()) else { return self.clone() };
-        let of = if first.is_negative() { negate(&self.coordinates) } else { self.coordinates.clone() };
-        let digits = of.iter().flat_map(|x| format!("{x} ").into_bytes());
-        let size = 1 + (digits.fold(0, |hash, digit| scrambled(hash ^ u64::from(digit))) % 10_000) as i64;
-        let mut coordinates = vec![Rational::ZERO; of.len()];
-        coordinates[0] = Rational::from(if first.is_negative() { -size } else { size });
-        Surd { coordinates, shared: self.shared.clone() }
+        let Coordinates { numerators, denominator } = &self.coordinates;
+        let Some(first) = numerators.iter().find(|x| !x.is_zero()) else { return self.clone() };
+        let is_negative = |n: &IBig| n.is_negative() != first.is_negative();
+        let words = numerators.iter().flat_map(|n| [u64::from(is_negative(n))].into_iter().chain(words_of(&n.unsigned_abs())));
+        let words = words.chain(words_of(denominator));
+        let size = 1 + (words.fold(0, |hash, word| scrambled(hash ^ word)) % 10_000) as i64;
+        let size = Rational::from(if first.is_negative() { -size } else { size });
+        self.with(Coordinates::rational(&size, numerators.len()))
     }
     fn is_zero(&self) -> bool {
-        is_zero(&self.coordinates)
+        self.coordinates.is_zero()
     }
+}
+
+/// Its digits to the base of 2^64.
+fn words_of(n: &UBig) -> Vec<u64> {
+    n.to_le_bytes().chunks(8).map(|bytes| bytes.iter().rev().fold(0, |word, byte| word << 8 | u64::from(*byte))).collect()
 }
 
 /// The tower of a robot, with random fractions for its angles without roots and for pi.
@@ -212,14 +325,17 @@ impl Tower {
         let mut tower = Tower {
             shared: Arc::new(Shared::new(Vec::new())),
             stream: stream.branch(),
-            pi: Surd { coordinates: vec![Rational::ZERO; 1 << levels], shared: Arc::new(Shared::new(Vec::new())) },
+            pi: Surd {
+                coordinates: Coordinates::rational(&Rational::ZERO, 1 << levels),
+                shared: Arc::new(Shared::new(Vec::new())),
+            },
             roots: BTreeMap::new(),
             angles: BTreeMap::new(),
             defined: Defined::default(),
             longest,
         };
         // The squares are found in the full width, the levels above still without a square of their own, and cut to the level below.
-        let mut squares: Vec<Vec<Rational>> = (0..levels).map(|level| vec![Rational::ZERO; 1 << level]).collect();
+        let mut squares: Vec<Vec<IBig>> = (0..levels).map(|level| vec![IBig::ZERO; 1 << level]).collect();
         tower.shared = Arc::new(Shared::new(squares.clone()));
         tower.pi = tower.draw();
         for angle in &atoms.angles {
@@ -235,12 +351,14 @@ impl Tower {
                         Root::Integer(n) => tower.rational(&Rational::from(n.clone())),
                         Root::Nested(inner) => tower.constant(inner)?,
                     };
-                    squares[level] = square.coordinates[..1 << level].to_vec();
+                    let Coordinates { numerators, denominator } = square.coordinates;
+                    let factor = IBig::from(denominator.clone());
+                    squares[level] = numerators[..1 << level].iter().map(|n| n * &factor).collect();
                     tower.renew(squares.clone());
-                    let mut unit = tower.integer(0);
-                    unit.coordinates[1 << level] = Rational::ONE;
+                    let mut root = vec![IBig::ZERO; numerators.len()];
+                    root[1 << level] = IBig::ONE;
                     level += 1;
-                    unit
+                    Surd { coordinates: Coordinates::new(root, denominator), shared: tower.shared.clone() }
                 }
             };
             tower.roots.insert(root.clone(), value);
@@ -249,7 +367,7 @@ impl Tower {
     }
 
     /// Tells all numbers that are kept what the squares are.
-    fn renew(&mut self, squares: Vec<Vec<Rational>>) {
+    fn renew(&mut self, squares: Vec<Vec<IBig>>) {
         self.shared = Arc::new(Shared::new(squares));
         let angles = self.angles.values_mut().flat_map(|(sine, cosine)| [sine, cosine]);
         let all = angles.chain(self.roots.values_mut()).chain([&mut self.pi]);
@@ -257,9 +375,7 @@ impl Tower {
     }
 
     fn rational(&self, value: &Rational) -> Surd {
-        let mut coordinates = vec![Rational::ZERO; 1 << self.shared.squares.len()];
-        coordinates[0] = value.clone();
-        Surd { coordinates, shared: self.shared.clone() }
+        Surd { coordinates: Coordinates::rational(value, 1 << self.shared.squares.len()), shared: self.shared.clone() }
     }
 }
 
@@ -308,14 +424,20 @@ mod tests {
     #[test]
     fn roots_of_roots_square_to_what_they_are_roots_of() {
         let parse = |text: &str| Formula::parse(text).expect("a formula");
-        let formulas: Vec<Formula> = ["sqrt(6)", "sqrt(5 + sqrt(2))", "cos(7/10)", "pi"].iter().map(|t| parse(t)).collect();
-        let tower = Tower::new(&mut Stream::new(1), &Atoms::of(&formulas), &Dependent::new(), 4).expect("three roots");
+        let formulas: Vec<Formula> =
+            ["sqrt(6)", "sqrt(5 + sqrt(2))", "sqrt(3/4 + 1/5*sqrt(2))", "cos(7/10)", "pi"].iter().map(|t| parse(t)).collect();
+        let tower = Tower::new(&mut Stream::new(1), &Atoms::of(&formulas), &Dependent::new(), 4).expect("four roots");
         let of = |text: &str| tower.constant(&parse(text)).expect("no division by zero");
         assert_eq!(of("sqrt(6)*sqrt(2)"), of("2*sqrt(3)"));
         assert_eq!(of("sqrt(5 + sqrt(2))^2"), of("5 + sqrt(2)"));
+        assert_eq!(of("sqrt(3/4 + 1/5*sqrt(2))^2"), of("3/4 + 1/5*sqrt(2)"));
         assert_eq!(of("sin(7/10)^2 + cos(7/10)^2"), of("1"));
         let odd = of("1 + sqrt(2) - 3*sqrt(6) + 1/7*sqrt(5 + sqrt(2))*pi");
+        let other = of("2/9 - sqrt(3)*sqrt(3/4 + 1/5*sqrt(2)) + 1/6*cos(7/10)");
         assert_eq!(odd.times(&odd.inverse().unwrap()), of("1"));
+        assert_eq!(odd.plus(&other).times(&odd.minus(&other)), odd.times(&odd).minus(&other.times(&other)));
+        assert_eq!(odd.times(&other).over(&other), Some(odd.clone()));
+        assert_eq!(odd.minus(&other).plus(&other).minus(&odd), of("0"));
         assert_ne!(of("sqrt(2)"), of("sqrt(3)"));
         assert_eq!(of("(1/(1 + sqrt(2)))"), of("sqrt(2) - 1"));
     }
