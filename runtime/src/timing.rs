@@ -31,6 +31,7 @@ mod row;
 mod segment;
 mod solve;
 mod timed;
+mod trial;
 
 pub use fault::{TimingError, TimingFault};
 pub use governor::{Command, Governed, Governor, Phase};

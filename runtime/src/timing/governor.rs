@@ -1,10 +1,11 @@
 //! Stops, overrides and resumes on a timed path, within all limits.
 
-use super::inner::{HalfPlanes, Trial};
+use super::inner::HalfPlanes;
 use super::law::Law;
 use super::model::JointFriction;
 use super::segment::{Assumed, Inner, Segment};
 use super::timed::Timing;
+use super::trial::Trial;
 use crate::linalg::lit;
 use crate::reference::JointReference;
 use crate::scalar::seconds;
@@ -65,6 +66,8 @@ pub struct Governor<'a, T, const N: usize> {
     /// How long the law takes, and the time since it began, s.
     duration: T,
     time: T,
+    /// The rows that bounded the last choice.
+    first: [Option<usize>; 2],
 }
 
 /// The rows of a segment for one k, and what they assume.
@@ -104,6 +107,7 @@ impl<'a, T: RealField + Copy, const N: usize> Governor<'a, T, N> {
             law: rest,
             duration: T::zero(),
             time: T::zero(),
+            first: [None; 2],
         };
         if first.inner.law.x0 > T::zero() {
             governor.command = Command::Override(T::one());
@@ -254,6 +258,12 @@ impl<'a, T: RealField + Copy, const N: usize> Governor<'a, T, N> {
             // On at half the speed, without getting faster.
             _ => ((timed.x2 * lit(0.25)).min(if x > zero { x } else { timed.x2 }), Phase::GoingOn),
         };
+        let own = Rows { k: timed.k, assumed: whole.inner.assumed };
+        if from == zero && x == timed.x0 && target == timed.x2 && timed.is_passed() {
+            // On the timed motion, which is proved.
+            self.go(from, timed, own, phase);
+            return true;
+        }
         let (width, here) = (one - from, timed.x(from));
         let rest;
         let part = if from > zero {
@@ -267,79 +277,85 @@ impl<'a, T: RealField + Copy, const N: usize> Governor<'a, T, N> {
             (false, true) => target / timed.x2,
             (false, false) => one,
         };
-        let others = candidates(&self.timing, whole, Some(scale));
-        let others = others.into_iter().flatten().map(|rows| Rows { k: rows.k * width * width, ..rows });
+        let others = Candidates::new(&self.timing, whole);
+        let others = (0..ROWS).filter_map(|i| others.rows(i, Some(scale)));
+        let others = others.map(|rows| Rows { k: rows.k * width * width, ..rows });
         let (limits, friction, next) = (&self.timing.limits, &self.timing.friction, self.next(self.segment));
-        let mut trial = Trial::new(part, limits, friction, x);
-        let mut best: Option<(T, T, Law<T>, Rows<T>)> = None;
+        let mut trial = Trial::new(part, limits, friction, x, self.first);
+        let mut best: Option<(T, Law<T>, Rows<T>)> = None;
         for rows in current.into_iter().chain(others) {
             let off = |x2: T| (x2 - target).abs();
             let is_nearer = |x2: T| best.as_ref().is_none_or(|(least, ..)| off(x2) < *least);
-            let nearest = |[low, high]: [T; 2]| target.max(low).min(high);
-            let found = trial.interval(rows.k, &rows.assumed, next, |ends| is_nearer(nearest(ends)));
-            let Some(ends) = found else { continue };
-            // A law that rests on its way gives way to the largest X2.
-            for x2 in [nearest(ends), ends[1]] {
-                let law = Law { length: part.length, x0: x, k: rows.k, x2 };
-                let duration = law.duration();
-                if duration.is_finite() {
-                    if is_nearer(x2) {
-                        best = Some((off(x2), duration, law, rows));
-                    }
-                    break;
-                }
+            let Some(x2) = trial.nearest(rows.k, &rows.assumed, next, target, is_nearer) else { continue };
+            let mut law = Law { length: part.length, x0: x, k: rows.k, x2 };
+            if !law.is_passed() {
+                // A law that rests on its way gives way to the largest X2.
+                let largest = trial.nearest(rows.k, &rows.assumed, next, lit(1e30), |_| true);
+                law.x2 = largest.unwrap_or(x2);
+            }
+            if law.is_passed() && is_nearer(law.x2) {
+                best = Some((off(law.x2), law, rows));
             }
             // Nothing is nearer: at the speed of the timed motion its own rows are the only ones.
             if best.as_ref().is_some_and(|(off, ..)| *off == zero) {
                 break;
             }
         }
-        let Some((_, duration, law, rows)) = best else { return false };
-        (self.law, self.rows, self.duration, self.time) = (law, rows, duration, zero);
-        (self.from, self.phase) = (from, phase);
+        self.first = trial.first;
+        let Some((_, law, rows)) = best else { return false };
+        self.go(from, law, rows, phase);
         true
+    }
+
+    fn go(&mut self, from: T, law: Law<T>, rows: Rows<T>, phase: Phase) {
+        (self.from, self.law, self.rows, self.phase) = (from, law, rows, phase);
+        (self.duration, self.time) = (law.duration(), T::zero());
     }
 }
 
 /// The rows that are tried on a segment: those of the timed motion, and for each window with k = 0, with the k of the timed motion at the
-/// speed of the window, and with that times `scale`.
-fn candidates<T: RealField + Copy, const N: usize>(
-    timing: &Timing<'_, T, N>,
-    segment: &Segment<T, N>,
-    scale: Option<T>,
-) -> [Option<Rows<T>>; ROWS] {
-    let Inner { law, assumed, .. } = segment.inner;
-    let (zero, half) = (T::zero(), lit::<T>(0.5));
-    let least = law.x0.min(law.middle()).min(law.x2).max(zero);
-    let most = law.x0.max(law.middle()).max(law.x2);
-    // Without friction that is no line nothing depends on the window, and all rows have the same forms.
-    let curved = timing.friction.iter().any(JointFriction::is_curved);
-    let windows = if curved { WINDOWS.len() } else { 1 };
-    let mut rows = [None; ROWS];
-    let (first, others) = rows.split_at_mut(1);
-    first.fill(Some(Rows { k: law.k, assumed }));
-    for (of, window) in others.chunks_exact_mut(3).zip(&WINDOWS).take(windows) {
-        let [from, to] = window.map(lit::<T>);
+/// speed of the window, and with that times a scale.
+struct Candidates<T> {
+    law: Law<T>,
+    assumed: Assumed<T>,
+    /// The timed motion's least and largest x.
+    x: [T; 2],
+    /// Without friction that is no line nothing depends on the window, and all rows have the same forms.
+    curved: bool,
+}
+
+impl<T: RealField + Copy> Candidates<T> {
+    fn new<const N: usize>(timing: &Timing<'_, T, N>, segment: &Segment<T, N>) -> Self {
+        let Inner { law, assumed, .. } = segment.inner;
+        let x = [law.x0.min(law.middle()).min(law.x2).max(T::zero()), law.x0.max(law.middle()).max(law.x2)];
+        Self { law, assumed, x, curved: timing.friction.iter().any(JointFriction::is_curved) }
+    }
+
+    /// Of `ROWS`; `None` where they would be others again.
+    fn rows(&self, index: usize, scale: Option<T>) -> Option<Rows<T>> {
+        let Self { law, assumed, x: [least, most], curved } = *self;
+        let Some(place) = index.checked_sub(1) else { return Some(Rows { k: law.k, assumed }) };
+        let [from, to] = WINDOWS.get(place / 3).filter(|_| curved || place < 3)?.map(lit::<T>);
+        let half = lit::<T>(0.5);
         let share = (from + to) * half;
+        let k = [Some(T::zero()), Some(law.k * share), scale.map(|scale| law.k * scale)][place % 3]?;
+        if !curved {
+            return Some(Rows { k, assumed });
+        }
         let top = if to < T::one() { most * to } else { assumed.x[1] };
         let touch = (law.x(half) * share).max(top * lit(1e-9)).max(lit(1e-30));
-        let assumed = if curved { Assumed { x: [least * from, top], touch, u: assumed.u } } else { assumed };
-        for (to, k) in of.iter_mut().zip([Some(zero), Some(law.k * share), scale.map(|scale| law.k * scale)]) {
-            *to = k.map(|k| Rows { k, assumed });
-        }
+        Some(Rows { k, assumed: Assumed { x: [least * from, top], touch, u: assumed.u } })
     }
-    rows
 }
 
 /// From which x at the start of a segment some rows lead to an x in `next`: the interval around the timed motion.
 fn backwards<T: RealField + Copy, const N: usize>(timing: &Timing<'_, T, N>, segment: &Segment<T, N>, next: [T; 2]) -> [T; 2] {
-    let mut found = [None; ROWS];
-    for (to, rows) in found.iter_mut().zip(candidates(timing, segment, None)) {
-        *to = rows.and_then(|Rows { k, assumed }| {
-            let planes = HalfPlanes::new(segment, &timing.limits, &timing.friction, k, &assumed, next);
-            planes.backwards(assumed.x[0], assumed.x[1])
-        });
-    }
+    let candidates = Candidates::new(timing, segment);
+    let found: [_; ROWS] = core::array::from_fn(|i| {
+        let Rows { k, assumed } = candidates.rows(i, None)?;
+        let planes = HalfPlanes::new(segment, &timing.limits, &timing.friction, k, &assumed, next);
+        planes.backwards(assumed.x[0], assumed.x[1])
+    });
     let mut all = segment.inner.interval;
     for _ in 0..ROWS {
         for [low, high] in found.iter().flatten() {

@@ -15,7 +15,7 @@ use nalgebra::RealField;
 
 /// x0 X0 + x2 X2 <= most.
 #[derive(Clone, Copy)]
-struct HalfPlane<T> {
+pub(super) struct HalfPlane<T> {
     x0: T,
     x2: T,
     most: T,
@@ -23,13 +23,13 @@ struct HalfPlane<T> {
 
 impl<T: RealField + Copy> HalfPlane<T> {
     /// Of a form at most 0.
-    fn of(form: &Form<T>, k: T) -> Self {
+    pub(super) fn of(form: &Form<T>, k: T) -> Self {
         Self { x0: form.x0, x2: form.x2, most: -form.rest - form.k * k }
     }
 }
 
 /// The forms of a row, at most 0 on the segment; `None` where its limit is infinite or cannot bind.
-fn of_row<T: RealField + Copy, const N: usize>(
+pub(super) fn of_row<T: RealField + Copy, const N: usize>(
     segment: &Segment<T, N>,
     index: usize,
     limits: &Limits<T, N>,
@@ -54,7 +54,7 @@ fn of_row<T: RealField + Copy, const N: usize>(
 }
 
 /// The half-planes of the middle coefficient, of u and of the interval at the end, for k.
-fn others<T: RealField + Copy>(h: T, k: T, assumed: &Assumed<T>, next: [T; 2]) -> [HalfPlane<T>; 8] {
+pub(super) fn others<T: RealField + Copy>(h: T, k: T, assumed: &Assumed<T>, next: [T; 2]) -> [HalfPlane<T>; 8] {
     let (zero, one, half) = (T::zero(), T::one(), lit::<T>(0.5));
     let ([least, most], u) = (assumed.x, assumed.u);
     let (g, bend) = (half / h, k / h);
@@ -98,7 +98,7 @@ impl<T: RealField + Copy, const N: usize> HalfPlanes<T, N> {
     }
 
     /// The interval of X2 for an X0.
-    fn interval(&self, x0: T) -> Interval<T> {
+    pub(super) fn interval(&self, x0: T) -> Interval<T> {
         let mut found = Interval::new();
         for plane in self.rows.iter().flatten().flatten().flatten().chain(&self.others) {
             found.cut(plane, x0);
@@ -165,98 +165,30 @@ impl<T: RealField + Copy, const N: usize> HalfPlanes<T, N> {
     }
 }
 
-/// The X2 that follow an X0, for one k and one assumption after another. The rows that bounded the last interval come first, so a trial that
-/// leads nowhere ends after a few rows.
-pub(super) struct Trial<'a, T, const N: usize> {
-    segment: &'a Segment<T, N>,
-    limits: &'a Limits<T, N>,
-    friction: &'a [JointFriction<T>; N],
-    x0: T,
-    /// Rows of the lower and the upper end of the last interval.
-    first: [Option<usize>; 2],
-    /// Of the last assumption the forms of the rows that were needed: no k enters.
-    assumed: Assumed<T>,
-    window: Window<T>,
-    forms: [[Option<Option<[Form<T>; 5]>>; 5]; N],
-}
-
-impl<'a, T: RealField + Copy, const N: usize> Trial<'a, T, N> {
-    pub(super) fn new(segment: &'a Segment<T, N>, limits: &'a Limits<T, N>, friction: &'a [JointFriction<T>; N], x0: T) -> Self {
-        let assumed = segment.inner.assumed;
-        let window = Window::new(assumed.x, assumed.touch);
-        Self { segment, limits, friction, x0, first: [None; 2], assumed, window, forms: [[None; 5]; N] }
-    }
-
-    /// The X2 that keep all rows, within rounding; `None` where there is no such X2, or where an interval around them does not serve.
-    pub(super) fn interval(
-        &mut self,
-        k: T,
-        assumed: &Assumed<T>,
-        next: [T; 2],
-        serves: impl Fn([T; 2]) -> bool,
-    ) -> Option<[T; 2]> {
-        let slack = lit::<T>(256.0) * T::default_epsilon();
-        let ([least, most], x0) = (assumed.x, self.x0);
-        let is_inside = |low: T, high: T| x0 >= least.max(low) - most * slack && x0 <= most.min(high) + most * slack;
-        // Each row leaves less of the interval.
-        let is_left = |found: &Interval<T>| {
-            let [low, high] = found.alone;
-            is_inside(low, high) && found.width() >= -slack * found.size() && serves(found.ends())
-        };
-        let mut found = Interval::new();
-        for plane in others(self.segment.length, k, assumed, next) {
-            found.cut(&plane, x0);
-        }
-        if !is_left(&found) {
-            return None;
-        }
-        if self.assumed != *assumed {
-            (self.assumed, self.window) = (*assumed, Window::new(assumed.x, assumed.touch));
-            self.forms = [[None; 5]; N];
-        }
-        for index in self.first.into_iter().flatten().chain(0..Segment::<T, N>::ROWS) {
-            let Some(place) = self.forms.get_mut(index / 5).and_then(|of| of.get_mut(index % 5)) else { continue };
-            let new = || of_row(self.segment, index, self.limits, self.friction, assumed, &self.window);
-            let Some(forms) = place.get_or_insert_with(new) else { continue };
-            for form in forms {
-                let plane = HalfPlane::of(form, k);
-                if let Some(first) = found.cut(&plane, x0).and_then(|end| self.first.get_mut(end)) {
-                    *first = Some(index);
-                }
-            }
-            if !is_left(&found) {
-                return None;
-            }
-        }
-        Some(found.ends())
-    }
-}
-
 /// The interval of X2 for an X0: (lowest, its slope by X0), (highest, its slope), and the X0 that the planes without X2 allow.
-struct Interval<T> {
+pub(super) struct Interval<T> {
     low: (T, T),
     high: (T, T),
-    alone: [T; 2],
+    pub(super) alone: [T; 2],
 }
 
 impl<T: RealField + Copy> Interval<T> {
-    fn new() -> Self {
+    pub(super) fn new() -> Self {
         Self { low: (-lit::<T>(1e30), T::zero()), high: (lit(1e30), T::zero()), alone: [T::zero(), lit(1e30)] }
     }
 
-    /// Takes what a plane leaves; which end of the interval it moves.
-    fn cut(&mut self, plane: &HalfPlane<T>, x0: T) -> Option<usize> {
+    /// Takes what a plane leaves; which end of the interval it moves. It divides only where it moves one.
+    pub(super) fn cut(&mut self, plane: &HalfPlane<T>, x0: T) -> Option<usize> {
         let zero = T::zero();
+        let room = plane.most - plane.x0 * x0;
         if plane.x2 > zero {
-            let x2 = (plane.most - plane.x0 * x0) / plane.x2;
-            if x2 < self.high.0 {
-                self.high = (x2, -plane.x0 / plane.x2);
+            if room < self.high.0 * plane.x2 {
+                self.high = (room / plane.x2, -plane.x0 / plane.x2);
                 return Some(1);
             }
         } else if plane.x2 < zero {
-            let x2 = (plane.most - plane.x0 * x0) / plane.x2;
-            if x2 > self.low.0 {
-                self.low = (x2, -plane.x0 / plane.x2);
+            if room < self.low.0 * plane.x2 {
+                self.low = (room / plane.x2, -plane.x0 / plane.x2);
                 return Some(0);
             }
         } else if plane.x0 > zero {
@@ -270,59 +202,16 @@ impl<T: RealField + Copy> Interval<T> {
     }
 
     /// The ends, at least 0; the upper one counts within rounding.
-    fn ends(&self) -> [T; 2] {
+    pub(super) fn ends(&self) -> [T; 2] {
         let high = self.high.0.max(T::zero());
         [self.low.0.min(high), high]
     }
 
-    fn width(&self) -> T {
+    pub(super) fn width(&self) -> T {
         self.high.0 - self.low.0
     }
 
-    fn size(&self) -> T {
+    pub(super) fn size(&self) -> T {
         self.high.0.abs().max(self.low.0.abs())
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::timing::segment::Column;
-
-    /// In whatever order the rows come, a trial leaves the interval of all half-planes, and ends early only where that does not serve.
-    #[test]
-    fn a_trial_leaves_what_all_half_planes_leave() {
-        let mut state = 5u64;
-        let mut random = move || {
-            state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
-            (state >> 11) as f64 / (1u64 << 53) as f64
-        };
-        let curved = JointFriction { cubic: 0.3, stribeck: 0.5, stribeck_velocity: 0.2, ..JointFriction::default() };
-        let friction = [JointFriction { viscous: 0.4, coulomb: 0.1, ..JointFriction::default() }, curved];
-        let limits = Limits::velocity([1.2, 1.5]).and_then(|of| of.with_effort([-3.0; 2], [3.0; 2])).expect("limits");
-        let (mut some, mut none, mut early) = (0, 0, 0);
-        for _ in 0..500 {
-            let mut segment = Segment::<f64, 2> { length: 0.1, signs: [1.0, -1.0], ..Segment::empty() };
-            for (part, of) in segment.torques.iter_mut().chain(&mut segment.rates).enumerate() {
-                let least = if part == 5 { 0.0 } else { -1.0 };
-                *of = [0, 1]
-                    .map(|_| Column { quadratic: [0; 3].map(|_| least + (1.0 - least) * random()), error: 1e-3 * random() });
-            }
-            let (x0, target, next) = (random(), random(), [0.0, 0.3 + random()]);
-            let mut trial = Trial::new(&segment, &limits, &friction, x0);
-            for k in [0.0, 0.1, -0.1] {
-                let assumed = Assumed { x: [0.0, 0.2 + 1.3 * random()], touch: 0.1 + random(), u: 4.0 };
-                let at = HalfPlanes::new(&segment, &limits, &friction, k, &assumed, next).interval(x0);
-                let inside = x0 <= assumed.x[1].min(at.alone[1]) && x0 >= at.alone[0];
-                let expected = (inside && at.width() >= 0.0).then(|| at.ends());
-                let found = trial.interval(k, &assumed, next, |_| true);
-                assert_eq!(found, expected, "{segment:?} {assumed:?} {x0} {k}");
-                let near = |[low, high]: [f64; 2]| (target.max(low).min(high) - target).abs() < 0.1;
-                assert_eq!(trial.interval(k, &assumed, next, near), expected.filter(|ends| near(*ends)));
-                (some, none) = (some + usize::from(found.is_some()), none + usize::from(found.is_none()));
-                early += usize::from(expected.is_some_and(|ends| !near(ends)));
-            }
-        }
-        assert!(some > 100 && none > 100 && early > 50, "{some} {none} {early}");
     }
 }

@@ -44,6 +44,16 @@ impl<T: RealField + Copy> Law<T> {
         self.x0 * r * r + self.middle() * lit::<T>(2.0) * r * t + self.x2 * t * t
     }
 
+    /// Whether x is above zero inside, so that the duration is finite.
+    pub(super) fn is_passed(&self) -> bool {
+        let v = self.x0.max(T::zero()).sqrt() + self.x2.max(T::zero()).sqrt();
+        if v == T::zero() {
+            self.k > T::zero()
+        } else {
+            -lit::<T>(2.0) * self.k / (v * v) < T::one()
+        }
+    }
+
     /// How long the segment takes, s; infinite where x does not leave zero.
     pub(super) fn duration(&self) -> T {
         let two = lit::<T>(2.0);

@@ -49,6 +49,11 @@ impl<T: RealField + Copy> Window<T> {
     pub(super) fn new(x: [T; 2], touch: T) -> Self {
         Self { x, touch, above: Line::tangent(touch.sqrt()), below: Line::chord(x[0], x[1]) }
     }
+
+    /// The lines over the root of x: below it and above.
+    pub(super) fn lines(&self) -> [Line<T>; 2] {
+        [self.below, self.above]
+    }
 }
 
 impl<T: RealField + Copy> Row<T> {

@@ -1,0 +1,409 @@
+//! From an X0 the X2 nearest to a wish, for one k after another, with few of the rows.
+//!
+//! With X2 known, x and u lie in short intervals, and so does every row. A row that these intervals keep is no bound of X2 there. So rows
+//! are formed only where the intervals do not keep them, and the X2 nearest to the wish within all formed rows is that within all rows.
+
+use super::inner::{of_row, others, HalfPlane, Interval};
+use super::limits::Limits;
+use super::model::JointFriction;
+use super::row::{Form, Quadratic, Window};
+use super::segment::{Assumed, Segment};
+use crate::linalg::lit;
+use nalgebra::RealField;
+
+/// Values within `reach` of `middle`.
+#[derive(Clone, Copy, Debug)]
+struct Spread<T> {
+    middle: T,
+    reach: T,
+}
+
+/// Without a case for numbers that are none, so that it is an instruction.
+fn least<T: PartialOrd>(a: T, b: T) -> T {
+    if a < b {
+        a
+    } else {
+        b
+    }
+}
+
+fn most<T: PartialOrd>(a: T, b: T) -> T {
+    if a > b {
+        a
+    } else {
+        b
+    }
+}
+
+impl<T: RealField + Copy> Spread<T> {
+    fn between(low: T, high: T) -> Self {
+        let half = lit::<T>(0.5);
+        Self { middle: (low + high) * half, reach: (high - low) * half }
+    }
+
+    fn of([a, b, c]: Quadratic<T>, error: T) -> Self {
+        let of = Self::between(least(least(a, b), c), most(most(a, b), c));
+        Self { reach: of.reach + error, ..of }
+    }
+
+    /// The largest size.
+    fn size(&self) -> T {
+        self.middle.abs() + self.reach
+    }
+
+    fn plus(&self, other: Self) -> Self {
+        Self { middle: self.middle + other.middle, reach: self.reach + other.reach }
+    }
+
+    fn times(&self, other: &Self) -> Self {
+        Self {
+            middle: self.middle * other.middle,
+            reach: self.middle.abs() * other.reach + self.reach * (other.middle.abs() + other.reach),
+        }
+    }
+
+    fn scaled(&self, by: T) -> Self {
+        Self { middle: self.middle * by, reach: self.reach * by.abs() }
+    }
+}
+
+/// The functions of a joint on a segment.
+#[derive(Clone, Copy, Debug)]
+struct Functions<T> {
+    /// m, c, d of the torque; v of viscous friction.
+    torque: [Spread<T>; 3],
+    v: Option<Spread<T>>,
+    /// q', without its error, and q''.
+    rate: Spread<T>,
+    rate_error: T,
+    curvature: Spread<T>,
+    /// q'² in the middle, and at most.
+    square: [T; 2],
+    sign: T,
+}
+
+/// What a law leaves of the segment: sqrt(x) by its lines, x and u.
+struct Reached<T> {
+    u: Spread<T>,
+    x: Spread<T>,
+    root: Spread<T>,
+}
+
+/// A row that was formed; no k enters. `None` where it cannot bind.
+#[derive(Clone, Copy, Debug)]
+struct Formed<T> {
+    index: usize,
+    forms: Option<[Form<T>; 5]>,
+}
+
+/// The X2 that follow an X0, for one k and one assumption after another.
+pub(super) struct Trial<'a, T, const N: usize> {
+    segment: &'a Segment<T, N>,
+    limits: &'a Limits<T, N>,
+    friction: &'a [JointFriction<T>; N],
+    x0: T,
+    joints: [Functions<T>; N],
+    assumed: Assumed<T>,
+    window: Window<T>,
+    /// What the assumption adds to the torque of each joint: errors, and friction over dq².
+    assumption: [Spread<T>; N],
+    /// The rows that were formed for the last assumption: `count` of them.
+    formed: [[Option<Formed<T>>; 5]; N],
+    count: usize,
+    /// The rows that moved the lower and the upper end last.
+    pub(super) first: [Option<usize>; 2],
+}
+
+impl<'a, T: RealField + Copy, const N: usize> Trial<'a, T, N> {
+    pub(super) fn new(
+        segment: &'a Segment<T, N>,
+        limits: &'a Limits<T, N>,
+        friction: &'a [JointFriction<T>; N],
+        x0: T,
+        first: [Option<usize>; 2],
+    ) -> Self {
+        let zero = Spread { middle: T::zero(), reach: T::zero() };
+        let none = Functions {
+            torque: [zero; 3],
+            v: None,
+            rate: zero,
+            rate_error: T::zero(),
+            curvature: zero,
+            square: [T::zero(); 2],
+            sign: T::zero(),
+        };
+        let assumed = segment.inner.assumed;
+        let mut trial = Self {
+            segment,
+            limits,
+            friction,
+            x0,
+            joints: [none; N],
+            assumed,
+            window: Window::new(assumed.x, assumed.touch),
+            assumption: [zero; N],
+            formed: [[None; 5]; N],
+            count: 0,
+            first,
+        };
+        for (joint, (to, friction)) in trial.joints.iter_mut().zip(friction).enumerate() {
+            *to = functions(segment, friction, joint).unwrap_or(none);
+        }
+        trial.assume(&assumed);
+        trial
+    }
+
+    /// Rows are formed anew.
+    fn assume(&mut self, assumed: &Assumed<T>) {
+        self.assumed = *assumed;
+        self.window = Window::new(assumed.x, assumed.touch);
+        self.count = 0;
+        let (root, [inertial, ..]) = (assumed.x[1].max(T::zero()).sqrt(), &self.segment.torques);
+        let rates = inertial.iter().zip(&self.segment.rates[0]);
+        let joints = self.friction.iter().zip(&self.joints);
+        for ((to, (of, joint)), (inertial, rate)) in self.assumption.iter_mut().zip(joints).zip(rates) {
+            let reach = inertial.error * assumed.u + of.viscous * rate.error * root;
+            *to = Spread { middle: T::zero(), reach };
+            if of.has_curve() {
+                *to = to.plus(curve(of, joint, assumed));
+            }
+        }
+    }
+
+    /// The X2 nearest to `target` that keeps all rows, within rounding; `None` where there is no such X2, or where it cannot serve.
+    /// `serves` is asked for nearer and nearer ones.
+    pub(super) fn nearest(
+        &mut self,
+        k: T,
+        assumed: &Assumed<T>,
+        next: [T; 2],
+        target: T,
+        serves: impl Fn(T) -> bool,
+    ) -> Option<T> {
+        let slack = lit::<T>(256.0) * T::default_epsilon();
+        let ([least, most], x0) = (assumed.x, self.x0);
+        let is_inside = |low: T, high: T| x0 >= least.max(low) - most * slack && x0 <= most.min(high) + most * slack;
+        let nearest = |found: &Interval<T>| {
+            let [low, high] = found.ends();
+            target.max(low).min(high)
+        };
+        // Each row leaves less of the interval.
+        let is_left = |found: &Interval<T>| {
+            let [low, high] = found.alone;
+            is_inside(low, high) && found.width() >= -slack * found.size() && serves(nearest(found))
+        };
+        let mut found = Interval::new();
+        for plane in others(self.segment.length, k, assumed, next) {
+            found.cut(&plane, x0);
+        }
+        if !is_left(&found) {
+            return None;
+        }
+        if self.assumed != *assumed {
+            self.assume(assumed);
+        }
+        // Faster or slower: the row that ended that last is likely to do so again.
+        let end = usize::from(target > x0);
+        if let Some(index) = self.first.get(end).copied().flatten() {
+            self.form(index);
+        }
+        for at in 0..self.count {
+            self.cut(at, k, &mut found);
+        }
+        if !is_left(&found) {
+            return None;
+        }
+        // Each round but the last one forms a row.
+        for _ in 0..=Segment::<T, N>::ROWS {
+            let x2 = nearest(&found);
+            let reached = self.reached(k, x2);
+            let before = self.count;
+            for joint in 0..N {
+                for index in self.doubtful(joint, &reached).into_iter().flatten() {
+                    if self.form(index) {
+                        self.cut(self.count - 1, k, &mut found);
+                        if !is_left(&found) {
+                            return None;
+                        }
+                    }
+                }
+            }
+            if self.count == before || nearest(&found) == x2 {
+                break;
+            }
+        }
+        Some(nearest(&found))
+    }
+
+    /// Forms a row; `false` where it has been formed.
+    fn form(&mut self, index: usize) -> bool {
+        let all = self.formed.as_flattened_mut();
+        if all.iter().take(self.count).flatten().any(|of| of.index == index) {
+            return false;
+        }
+        let forms = of_row(self.segment, index, self.limits, self.friction, &self.assumed, &self.window);
+        let Some(to) = all.get_mut(self.count) else { return false };
+        *to = Some(Formed { index, forms });
+        self.count += 1;
+        true
+    }
+
+    /// What a formed row leaves.
+    fn cut(&mut self, at: usize, k: T, found: &mut Interval<T>) {
+        let Some(Some(Formed { index, forms: Some(forms) })) = self.formed.as_flattened().get(at) else { return };
+        for form in forms {
+            if let Some(first) = found.cut(&HalfPlane::of(form, k), self.x0).and_then(|end| self.first.get_mut(end)) {
+                *first = Some(*index);
+            }
+        }
+    }
+
+    /// Bernstein coefficients of x and u for an X2: those of products are means of products of them.
+    fn reached(&self, k: T, x2: T) -> Reached<T> {
+        let half = lit::<T>(0.5);
+        let per = T::one() / self.segment.length;
+        let middle = (self.x0 + x2) * half + k;
+        let u = Spread { middle: (x2 - self.x0) * half * per, reach: k.abs() * per };
+        let (low, high) = (least(least(self.x0, x2), middle), most(most(self.x0, x2), middle));
+        let [below, above] = self.window.lines();
+        let root = Spread::between(below.slope * low + below.height, above.slope * high + above.height);
+        Reached { u, x: Spread::between(low, high), root }
+    }
+
+    /// The rows of a joint that their intervals do not keep.
+    fn doubtful(&self, joint: usize, at: &Reached<T>) -> [Option<usize>; 5] {
+        let mut rows = [None; 5];
+        let Limits { velocity, acceleration, effort } = self.limits;
+        let (Some(of), Some(assumption)) = (self.joints.get(joint), self.assumption.get(joint)) else { return rows };
+        let (Some(velocity), Some(acceleration), Some([low, high])) =
+            (velocity.get(joint), acceleration.get(joint), effort.get(joint))
+        else {
+            return rows;
+        };
+        // More than what is lost by rounding.
+        let share: T = T::one() - lit::<T>(1e-6) - lit::<T>(64.0) * T::default_epsilon();
+        let [e_high, e_low, a_high, a_low, speed] = &mut rows;
+        let [m, c, d] = &of.torque;
+        let mut torque = m.times(&at.u).plus(c.times(&at.x)).plus(*d).plus(*assumption);
+        if let Some(v) = &of.v {
+            torque = torque.plus(v.times(&at.root));
+        }
+        if !(torque.middle + torque.reach <= *high * share) {
+            *e_high = Some(2 * joint);
+        }
+        if !(torque.middle - torque.reach >= *low * share) {
+            *e_low = Some(2 * joint + 1);
+        }
+        if acceleration.is_finite() {
+            let error = Spread { middle: T::zero(), reach: of.rate_error * self.assumed.u };
+            let all = of.rate.times(&at.u).plus(of.curvature.times(&at.x)).plus(error);
+            if !(all.size() <= *acceleration * share) {
+                (*a_high, *a_low) = (Some(2 * (N + joint)), Some(2 * (N + joint) + 1));
+            }
+        }
+        if !(of.square[1] * (at.x.middle + at.x.reach) <= *velocity * *velocity * share) {
+            *speed = Some(4 * N + joint);
+        }
+        rows
+    }
+}
+
+/// The functions of a joint, as its rows have them.
+fn functions<T: RealField + Copy, const N: usize>(
+    segment: &Segment<T, N>,
+    friction: &JointFriction<T>,
+    joint: usize,
+) -> Option<Functions<T>> {
+    let [m, c, g] = [0, 1, 2].map(|part: usize| segment.torques.get(part).and_then(|of| of.get(joint)));
+    let [rate, curvature, square] = [0, 1, 2].map(|part: usize| segment.rates.get(part).and_then(|of| of.get(joint)));
+    let (m, c, g, rate, curvature, square, sign) = (m?, c?, g?, rate?, curvature?, square?, *segment.signs.get(joint)?);
+    let (zero, one) = (T::zero(), T::one());
+    let mut d = Spread::of(g.quadratic, g.error * (one + friction.load));
+    d.middle += sign * friction.coulomb + friction.offset;
+    if friction.load > zero {
+        let size = Spread::of(g.quadratic, zero).size();
+        d = d.plus(Spread::between(zero, size).scaled(sign * friction.load));
+    }
+    let rates = Spread::of(rate.quadratic, zero);
+    let [q0, q1, q2] = square.quadratic;
+    Some(Functions {
+        torque: [Spread::of(m.quadratic, zero), Spread::of(c.quadratic, c.error), d],
+        v: (friction.viscous != zero).then(|| rates.scaled(friction.viscous)),
+        rate: rates,
+        rate_error: rate.error,
+        curvature: Spread::of(curvature.quadratic, curvature.error),
+        square: [(q0 + q1 + q1 + q2) * lit(0.25), most(most(q0, q1), q2).max(zero) + square.error],
+        sign,
+    })
+}
+
+/// Cubic and Stribeck friction by their chords and tangents within a window.
+///
+/// A chord of y^(3/2) and the part above 0 of a tangent lie below its largest value, and the tangent is at least -1/2 of its value where it
+/// touches. Those of exp(-t), t = sqrt(y)/v, lie below 1, and the tangent is at least -t exp(-t)/2 y/y_touch > -0.184 y/y_touch.
+fn curve<T: RealField + Copy>(friction: &JointFriction<T>, of: &Functions<T>, assumed: &Assumed<T>) -> Spread<T> {
+    let [middle, largest] = of.square;
+    let (highest, touch) = (largest * most(assumed.x[1], assumed.touch), middle * assumed.touch);
+    let over = lit::<T>(1.0 + 1e-6);
+    let mut sum = Spread { middle: T::zero(), reach: T::zero() };
+    if friction.cubic != T::zero() {
+        let value = highest * highest.sqrt() * over;
+        sum = sum.plus(Spread::between(-value * lit(0.5), value).scaled(friction.cubic * of.sign));
+    }
+    if friction.stribeck != T::zero() {
+        sum = sum.plus(Spread::between(-highest / touch * lit(0.184), over).scaled(friction.stribeck * of.sign));
+    }
+    sum
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::inner::HalfPlanes;
+    use super::super::segment::Column;
+    use super::*;
+
+    /// A trial leaves what all half-planes leave, though it forms few rows, and ends early only where that does not serve.
+    #[test]
+    fn a_trial_finds_what_all_half_planes_leave() {
+        let mut state = 5u64;
+        let mut random = move || {
+            state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+            (state >> 11) as f64 / (1u64 << 53) as f64
+        };
+        let curved = JointFriction { cubic: 0.3, stribeck: 0.5, stribeck_velocity: 0.2, ..JointFriction::default() };
+        let plain = JointFriction { viscous: 0.4, coulomb: 0.1, load: 0.2, offset: 0.1, ..JointFriction::default() };
+        let friction = [plain, curved, JointFriction::default()];
+        let limits = Limits::velocity([1.2, 1.5, 1.5]).and_then(|of| of.with_acceleration([f64::INFINITY, 3.0, 3.0]));
+        let limits = limits.and_then(|of| of.with_effort([-3.0; 3], [3.0; 3])).expect("limits");
+        let [mut some, mut none, mut early, mut formed, mut trials] = [0; 5];
+        for round in 0..3000 {
+            let mut segment = Segment::<f64, 3> { length: 0.1 + 0.9 * random(), signs: [1.0, -1.0, 0.0], ..Segment::empty() };
+            for (part, of) in segment.torques.iter_mut().chain(&mut segment.rates).enumerate() {
+                let least = if part == 5 { 0.0 } else { -1.0 };
+                *of = [0; 3].map(|_| Column {
+                    quadratic: [0; 3].map(|_| (least + (1.0 - least) * random()) * if round % 2 == 0 { 1.0 } else { 3.0 }),
+                    error: 1e-3 * random(),
+                });
+            }
+            let (x0, target, next) = (random(), 2.0 * random() - 0.5, [0.0, 0.3 + random()]);
+            let near = |[low, high]: [f64; 2]| target.max(low).min(high);
+            let mut trial = Trial::new(&segment, &limits, &friction, x0, [None; 2]);
+            for k in [0.0, 0.1, -0.1] {
+                let assumed = Assumed { x: [0.0, 0.2 + 1.3 * random()], touch: 0.1 + random(), u: 4.0 };
+                let at = HalfPlanes::new(&segment, &limits, &friction, k, &assumed, next).interval(x0);
+                let inside = x0 <= assumed.x[1].min(at.alone[1]) && x0 >= at.alone[0];
+                let expected = (inside && at.width() >= 0.0).then(|| near(at.ends()));
+                let found = trial.nearest(k, &assumed, next, target, |_| true);
+                assert_eq!(found, expected, "{segment:?} {assumed:?} {x0} {k}");
+                (formed, trials) = (formed + trial.count, trials + 1);
+                let serves = |x2: f64| (x2 - target).abs() < 0.1;
+                assert_eq!(trial.nearest(k, &assumed, next, target, serves), expected.filter(|x2| serves(*x2)));
+                (some, none) = (some + usize::from(found.is_some()), none + usize::from(found.is_none()));
+                early += usize::from(expected.is_some_and(|x2| !serves(x2)));
+            }
+        }
+        assert!(some > 1000 && none > 1000 && early > 300, "{some} {none} {early}");
+        // Of 13 rows.
+        assert!(formed < 8 * trials, "{formed} in {trials}");
+    }
+}
