@@ -143,6 +143,7 @@ fn values(found: &construction::InverseKinematics) -> Values {
         own: found.own.as_ref().map(numbers),
         given: given.cloned().collect(),
         length: found.length.clone(),
+        coordinates: found.coordinates.as_ref().map(|of| (of.coordinates.factors.clone(), of.coordinates.offset.clone())),
     }
 }
 

@@ -10,6 +10,7 @@
 
 mod chain;
 mod classes;
+mod coordinates;
 mod frame;
 mod general;
 mod jacobian;
@@ -23,6 +24,7 @@ use crate::manipulator::{GivenBeside, Manipulator};
 
 pub use chain::{Arrangement, Given};
 pub use classes::Regional;
+pub use coordinates::{Coordinates, Sums};
 pub use frame::Frame;
 
 use chain::Chain;
@@ -48,6 +50,8 @@ pub struct InverseKinematics {
     /// The arm's own loop, if it has fewer joints than the pose has rows. It starts at joint 1; joints after the arm's last joint
     /// stay at 0. The construction belongs to the arm with virtual joints, whose values must be 0 in a solution.
     pub own: Option<Arrangement>,
+    /// The coordinates of coupled joints. Everything else is of the chain of joints to the end effector and of their variables.
+    pub coordinates: Option<Coordinates>,
 }
 
 /// The redundancy: a value that the caller gives with the target.
@@ -100,7 +104,10 @@ pub fn of(manipulator: &Manipulator) -> Result<InverseKinematics, String> {
         );
     }
     if manipulator.coupling.is_some() {
-        return Err("it is not solved for an arm with coupled joints: use its Jacobian, with damping".into());
+        let coordinates = Coordinates::of(manipulator)?;
+        let found = of(&manipulator.chain())?;
+        let class = format!("{}; {}", found.class, coordinates.in_words());
+        return Ok(InverseKinematics { class, coordinates: Some(coordinates), ..found });
     }
     let chain = Chain::of(manipulator)?;
     let length = size(&chain);

@@ -12,7 +12,7 @@ mod project;
 use armgen_codegen::inverse_kinematics::InverseKinematics;
 use armgen_codegen::source::Source;
 use armgen_codegen::{validate, Scalar};
-use arms::{description, few, made_up, robots, P, R};
+use arms::{coupled, description, few, made_up, robots, P, R};
 use project::Project;
 
 fn classified(name: &str, text: &str) -> Result<InverseKinematics, String> {
@@ -57,6 +57,43 @@ fn classes_of_robots() {
         println!("{shown}");
         assert!((1..=joints).all(|joint| names(&shown, joint)), "{shown}");
         assert!(!shown.contains(&format!("q{}", joints + 2)), "{shown}");
+    }
+}
+
+/// Coupled joints have the class of their chain, and a last step for the coordinates; where whole turns differ, there is none.
+#[test]
+fn classes_of_coupled_arms() {
+    for (name, class, most, text) in coupled() {
+        let found = classified(name, &text).unwrap_or_else(|reason| panic!("{name}: {reason}"));
+        assert!(found.class.starts_with(class) && found.most == most, "{name}: {} {}", found.class, found.most);
+        assert!(found.text().contains("coordinates of the joint variables: "), "{name}");
+    }
+    let text_of = |arm: &str| coupled().into_iter().find(|(name, ..)| *name == arm).expect("an arm").3;
+    let steps = |arm: &str| classified(arm, &text_of(arm)).expect("a class").text();
+    let sums = "j1 = q1, j2 = q2, j3 = q2 + q3 - 1/2*pi, j4 = q4, j5 = q4 + q5, j6 = -q4 - 2*q5 + q6 - 3/10";
+    assert!(steps("coupled_6r").contains(sums), "{}", steps("coupled_6r"));
+    assert!(steps("coupled_bars").contains("variables: lower = q1, crank = q1 + q2"), "{}", steps("coupled_bars"));
+    let reason = |arm: &str, old: &str, new: &str| {
+        let text = text_of(arm);
+        assert!(text.contains(old), "{old}");
+        classified(arm, &text.replacen(old, new, 1)).expect_err("no class")
+    };
+    let turns = "whole turn";
+    for (arm, old, new, why) in [
+        ("coupled_6r", "adds: {j2: -1}", "adds: {j2: 1/2}", turns),
+        ("coupled_6r", "adds: {j4: -1}", "follows: {j4: -1}", "on 6 joints that move with 5 coordinates"),
+        // Half a turn of the crank, or two, for a whole one of the forearm.
+        ("coupled_bars", "follows: {crank: 1, lower: -1}", "follows: {crank: 2, lower: -1}", turns),
+        ("coupled_bars", "follows: {crank: 1, lower: -1}", "follows: {lower: -1}", "some joints do not move the end effector"),
+        (
+            "coupled_bars",
+            "tip: forearm",
+            "tip: forearm\ninverse_kinematics: {given: rod}",
+            "the joint that is given does not move",
+        ),
+    ] {
+        let found = reason(arm, old, new);
+        assert!(found.contains(why), "{arm}: {found}");
     }
 }
 

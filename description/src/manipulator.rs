@@ -523,6 +523,28 @@ impl Manipulator {
         }
     }
 
+    /// The joints from the base to the end effector as an arm of their own, in which each has a coordinate that is its variable, and no motor.
+    #[must_use]
+    pub fn chain(&self) -> Manipulator {
+        let path = self.path_to(self.tip.index());
+        let place = |joint: usize| path.iter().position(|&of| of == joint).map(|place| LinkId(place as u32));
+        let joint = |&index: &usize| {
+            let joint = self.joints[index].clone();
+            Joint { parent: joint.parent.and_then(|parent| place(parent.index())), motor: None, ..joint }
+        };
+        let given = self.inverse_kinematics.given.and_then(|given| match given {
+            GivenBeside::Joint(joint) => place(joint.index()).map(GivenBeside::Joint),
+            GivenBeside::Swivel => Some(given),
+        });
+        Manipulator {
+            joints: path.iter().map(joint).collect(),
+            tip: LinkId(path.len() as u32 - 1),
+            inverse_kinematics: Postures { given, ..self.inverse_kinematics },
+            coupling: None,
+            ..self.clone()
+        }
+    }
+
     /// The same arm with its first named end effector as the only one, without a name: for what knows one end effector. The payloads of the
     /// others are bodies of their links.
     #[must_use]

@@ -3,7 +3,9 @@
 use armgen_codegen::inverse_kinematics as exact;
 use armgen_codegen::kinds::{JointKind, Target};
 use armgen_codegen::manipulator::Manipulator;
-use armgen_numbers::postures::{Arrangement, Case, Construction, Frame, Given, InverseKinematics, Redundancy, Solver};
+use armgen_numbers::postures::{
+    Arrangement, Case, Construction, Coordinates, Frame, Given, InverseKinematics, Redundancy, Solver, Sums,
+};
 
 use crate::Scalar;
 
@@ -40,7 +42,7 @@ pub fn inverse_kinematics<T: Scalar>(manipulator: &Manipulator, found: &exact::I
         exact::Redundancy::Swivel => Redundancy::Swivel,
     });
     InverseKinematics {
-        prismatic: manipulator.joints.iter().map(|joint| joint.kind == JointKind::Prismatic).collect(),
+        prismatic: manipulator.coordinates().iter().map(|of| of.joint.kind == JointKind::Prismatic).collect(),
         orientation: found.target != Target::Position,
         construction,
         most: found.most,
@@ -48,6 +50,18 @@ pub fn inverse_kinematics<T: Scalar>(manipulator: &Manipulator, found: &exact::I
         length: T::nearest(&found.length),
         redundancy,
         own: found.own.as_ref().map(way),
+        coordinates: found.coordinates.as_ref().map(|of| Coordinates {
+            joints: of.slides.clone(),
+            variables: sums(&of.variables),
+            coordinates: sums(&of.coordinates),
+        }),
+    }
+}
+
+fn sums<T: Scalar>(exact: &exact::Sums) -> Sums<T> {
+    Sums {
+        factors: exact.factors.iter().map(|row| row.iter().map(T::nearest).collect()).collect(),
+        offset: exact.offset.iter().map(T::nearest).collect(),
     }
 }
 

@@ -7,7 +7,7 @@ use armgen_codegen::source::Source;
 use armgen_codegen::{validate, Model, Scalar};
 use armgen_evaluate::{programs, solver, Solver, Unfit, Verdict};
 
-use crate::arms::{few, generated, made_up, robots, workspace};
+use crate::arms::{coupled, few, generated, made_up, robots, workspace};
 
 /// The solver of an arm with the limits of its joints.
 type Limited<T> = (Solver<T>, Vec<[T; 2]>);
@@ -15,7 +15,8 @@ type Limited<T> = (Solver<T>, Vec<[T; 2]>);
 fn solver_of<T: Bits>(name: &str, text: &str, scalar: Scalar) -> Result<Limited<T>, String> {
     let (valid, diagnostics) = validate::read_for(&Source::new(name, text), scalar);
     let (manipulator, _) = valid.unwrap_or_else(|| panic!("{name}: {diagnostics:?}"));
-    let positions = manipulator.joints.iter().map(|joint| &joint.limits.position);
+    let coordinates = manipulator.coordinates();
+    let positions = coordinates.iter().map(|coordinate| &coordinate.limits.position);
     let limits = positions.map(|limits| limits.as_ref().map_or(T::UNLIMITED, |limits| limits.each_ref().map(T::nearest)));
     Ok((solver(&manipulator)?, limits.collect()))
 }
@@ -23,8 +24,12 @@ fn solver_of<T: Bits>(name: &str, text: &str, scalar: Scalar) -> Result<Limited<
 /// A posture is found again at its pose, and every posture found has the pose, all in process.
 #[test]
 fn postures_are_found_again() {
-    let all = robots().into_iter().chain(made_up().into_iter().map(|(name, _, _, text)| (name.to_owned(), text)));
-    let wanted = ["puma560", "ur5", "scara4", "panda7", "iiwa", "position3r", "table"];
+    let arms = made_up().into_iter().chain(coupled());
+    let all = robots().into_iter().chain(arms.map(|(name, _, _, text)| (name.to_owned(), text)));
+    let of_coupled = coupled();
+    let names = of_coupled.iter().map(|(name, ..)| *name).filter(|name| *name != "coupled_few");
+    let wanted: Vec<&str> =
+        ["puma560", "ur5", "scara4", "panda7", "iiwa", "position3r", "table"].into_iter().chain(names).collect();
     let mut seen = 0;
     for (name, text) in all.filter(|(name, _)| wanted.contains(&name.as_str())) {
         let source = Source::new(name.as_str(), text.as_str());

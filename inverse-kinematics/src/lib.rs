@@ -59,6 +59,7 @@
 //! [`conclude`](f64::conclude) makes joint variables with a verdict of a construction's solutions in the arm's order, `by_angle` for the general
 //! arm and two slides; joints beyond those of the arm are virtual and dropped. Where the pose is none ([`is_pose`](f64::is_pose)),
 //! [`Postures::none`](f64::Postures::none) says so.
+//! Where joints are coupled, [`in_coordinates`](f64::in_coordinates) turns postures in joint variables into postures in coordinates.
 //! The text `solutions` is that for the arm of an emitted module, which says `DOF`, `MAX_SOLUTIONS`, `PRISMATIC` and `POSITION_LIMITS` before it.
 //!
 //! # What is near
@@ -103,6 +104,7 @@ macro_rules! blocks {
         include!("blocks/shoulder_elbow_wrist.rs");
         include!("blocks/virtual_joints.rs");
         include!("blocks/postures.rs");
+        include!("blocks/coordinates.rs");
     };
 }
 

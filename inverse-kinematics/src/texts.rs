@@ -53,5 +53,6 @@ texts! {
     "shoulder_elbow_wrist" needs ["frame", "turn", "two_links", "regional", "three_turns", "branches", "arrangement"],
     "virtual_joints" needs ["closure", "arrangement"],
     "postures" needs ["frame", "angles", "branches"],
+    "coordinates" needs ["postures"],
     "solutions" needs ["postures"],
 }

@@ -121,10 +121,30 @@ pub enum Construction<T> {
     General(Box<[Arrangement<T>; 2]>),
 }
 
+/// Sums of the form `factors` x + `offset`.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Sums<T> {
+    /// A row for each sum, as long as there are sums.
+    pub factors: Vec<Vec<T>>,
+    /// The constant part of each sum.
+    pub offset: Vec<T>,
+}
+
+/// The coordinates p of coupled joints with variables q.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Coordinates<T> {
+    /// Whether each joint slides, of those from the base to the end effector. The construction is theirs.
+    pub joints: Vec<bool>,
+    /// q over p.
+    pub variables: Sums<T>,
+    /// p over q.
+    pub coordinates: Sums<T>,
+}
+
 /// Data of an arm from which all its solutions follow.
 #[derive(Clone, Debug, PartialEq)]
 pub struct InverseKinematics<T> {
-    /// Whether each joint of the arm slides.
+    /// Whether each joint of the arm slides; of coupled joints each coordinate.
     pub prismatic: Vec<bool>,
     /// Whether the target includes the orientation. Otherwise it is a position.
     pub orientation: bool,
@@ -140,6 +160,8 @@ pub struct InverseKinematics<T> {
     pub redundancy: Option<Redundancy<T>>,
     /// The loop of the arm's own joints, if the construction has virtual joints. Their values must be 0 in a solution.
     pub own: Option<Arrangement<T>>,
+    /// The coordinates of coupled joints; without them, postures consist of joint variables.
+    pub coordinates: Option<Coordinates<T>>,
 }
 
 /// Whether the postures at a pose are all that exist.
@@ -230,6 +252,8 @@ pub trait Solved: Scalar {
     #[doc(hidden)]
     fn swivel(table: &Self::Table, q: &[Self]) -> Option<Self>;
     #[doc(hidden)]
+    fn variables(table: &Self::Table, q: &[Self]) -> Vec<Self>;
+    #[doc(hidden)]
     fn within(table: &Self::Table, q: &mut [Self], limits: impl Fn(usize) -> [Self; 2]) -> bool;
     #[doc(hidden)]
     fn nearest_of(table: &Self::Table, all: &[Self], q: &[Self]) -> Option<usize>;
@@ -275,9 +299,10 @@ impl<T: Solved> Solver<T> {
         if q.len() != self.of.prismatic.len() {
             return None;
         }
+        let q = T::variables(&self.table, q);
         match self.of.redundancy.as_ref()? {
             Redundancy::Joint(given) => q.get(given.joint).copied(),
-            Redundancy::Swivel => T::swivel(&self.table, q),
+            Redundancy::Swivel => T::swivel(&self.table, &q),
         }
     }
 

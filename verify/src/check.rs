@@ -149,6 +149,10 @@ pub(crate) enum Check {
     Limits,
     /// Inverse kinematics: numbers of the loop are those of the arm.
     LoopNumbers,
+    /// Inverse kinematics: numbers of coordinates are those of the coupling.
+    Coordinates,
+    /// Inverse kinematics: whole turns of joints are whole turns of coordinates.
+    WholeTurns,
     /// Inverse kinematics: the loop closes.
     Loop,
     /// Inverse kinematics: the construction may be called with the loop.

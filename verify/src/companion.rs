@@ -366,7 +366,28 @@ pub fn of_inverse_kinematics(module: &Module) -> String {
         Float::F64 => "libm::sqrt",
         Float::F32 => "libm::sqrtf",
     };
-    include_str!("companion/inverse_kinematics.rs.txt").replace("{root}", root)
+    let text = include_str!("companion/inverse_kinematics.rs.txt").replace("{root}", root);
+    if sizes.joints.is_none() {
+        return text;
+    }
+    // All joints count, each by the change of its variable as coordinates change by 1.
+    let (before, rest) = text.split_once("    let turning =").expect("the joints are counted");
+    let (_, behind) = rest.split_once("    // A = R(q) R'").expect("then the rotation is taken");
+    let (before, behind) = (about_coordinates(before), about_coordinates(behind));
+    before
+        + "    // The change of all joint variables together as coordinates change by at most 1.\n    \
+           let moved = COUPLING.iter().flatten().fold(0.0, |sum, factor| sum + factor.abs());\n    \
+           let length = (length + moved) * 1.001 + ROUNDED;\n    let second = 1.001 * (length + 2.0) * moved * moved;\n    // A = R(q) R'"
+        + &behind
+}
+
+/// A text about an arm's joint variables as one about coordinates of coupled joints.
+fn about_coordinates(text: &str) -> String {
+    let text = text.replace("in the joint variable that differs most", "in the coordinate that differs most");
+    text.replace(
+        "k = l r² + 2 r s for r joints that turn and s that slide",
+        "k = (l + 2) s², s the sum of |`COUPLING`|, over both turns and slides",
+    )
 }
 
 fn number(value: f64, real: Float) -> String {

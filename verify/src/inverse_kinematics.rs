@@ -16,6 +16,7 @@
 mod certificate;
 mod chain;
 mod class;
+mod coordinates;
 mod counts;
 mod forms;
 mod modular;
@@ -30,7 +31,7 @@ mod text;
 use std::fmt;
 
 use armgen_description::exact::Number;
-use armgen_description::kinds::Scalar;
+use armgen_description::kinds::{JointKind, Scalar};
 use armgen_description::manipulator::Manipulator;
 use armgen_description::source::Source;
 use sha2::{Digest, Sha256};
@@ -87,6 +88,8 @@ pub struct Values {
     pub given: Vec<Number>,
     /// A length of the arm's size, m.
     pub length: Number,
+    /// Of coupled joints, the coordinates over joint variables: factors by rows, and constants.
+    pub coordinates: Option<(Vec<Vec<Number>>, Vec<Number>)>,
 }
 
 /// The findings about a module of inverse kinematics.
@@ -271,7 +274,7 @@ fn fill(
         report.absent = true;
         return Ok(());
     };
-    let manipulator = &points::without_bodies(manipulator);
+    let (whole, manipulator) = (manipulator, &points::without_bodies(manipulator));
     report.scalar = module.real.name();
     report.most = module.most;
     // The seed omits the first line: it contains a freely chosen file name, which could otherwise select the poses.
@@ -279,9 +282,11 @@ fn fill(
     let seed: [u8; 32] = Sha256::new().chain_update(source.text()).chain_update([0]).chain_update(chosen).finalize().into();
     let mut stream = Stream::of(seed);
     let claims = claims(values)?;
-    report.numbers = numbers(&module, manipulator, &claims)?;
+    report.numbers = numbers(&module, whole, &claims)?;
+    let of_coordinates = coordinates::check(&module, whole, &claims.coordinates)?;
+    report.numbers += of_coordinates.len();
     let all: Vec<Formula> = claims.loops.iter().chain(&claims.own).flatten().chain(&claims.given).cloned().collect();
-    report.exact_values = all.iter().map(ToString::to_string).collect();
+    report.exact_values = all.iter().chain(&of_coordinates).map(ToString::to_string).collect();
     let constants = Constants::of(manipulator, &all)?;
     let most = construction(&module, manipulator, &constants, &claims, &mut stream)?;
     if module.most != most && Check::MostSolutions.is_made() {
@@ -356,7 +361,7 @@ fn fill(
         let redundancy = given.map_or(0.0, |joint| {
             let (n, d) = pose.values[joint];
             let x = n as f64 / d as f64;
-            if module.prismatic[joint] {
+            if manipulator.joints[joint].kind == JointKind::Prismatic {
                 x
             } else {
                 2.0 * libm::atan(x)
@@ -380,6 +385,7 @@ struct Claims {
     own: Option<Vec<Formula>>,
     given: Vec<Formula>,
     length: Formula,
+    coordinates: Option<(Vec<Vec<Number>>, Vec<Number>)>,
 }
 
 fn claims(values: &Result<Values, String>) -> Result<Claims, String> {
@@ -390,28 +396,32 @@ fn claims(values: &Result<Values, String>) -> Result<Claims, String> {
         own: values.own.as_ref().map(formulas),
         given: formulas(&values.given),
         length: formula(&values.length),
+        coordinates: values.coordinates.clone(),
+    })
+}
+
+/// Whether a number of the text is the float nearest to an exact value.
+fn is_nearest(module: &Text, text: &str, exact: &Formula) -> bool {
+    module.real.read(text.trim_start_matches('-')).is_some_and(|value| {
+        let value = if text.starts_with('-') { -value } else { value };
+        module.real.is_nearest(value, exact)
     })
 }
 
 /// Checks that all numbers are the floats nearest to the claimed values or to those of the description; returns their count.
 fn numbers(module: &Text, manipulator: &Manipulator, claims: &Claims) -> Result<usize, String> {
-    let nearest = |text: &str, exact: &Formula| {
-        module.real.read(text.trim_start_matches('-')).is_some_and(|value| {
-            let value = if text.starts_with('-') { -value } else { value };
-            module.real.is_nearest(value, exact)
-        })
-    };
+    let nearest = |text: &str, exact: &Formula| is_nearest(module, text, exact);
     let mut count = 1;
-    if module.dof != manipulator.joints.len() {
-        return Err(format!("DOF: {} where the arm has {} joints", module.dof, manipulator.joints.len()));
+    if module.dof != manipulator.dof() {
+        return Err(format!("DOF: {} where the arm has {} joints", module.dof, manipulator.dof()));
     }
-    for (i, joint) in manipulator.joints.iter().enumerate() {
-        if module.prismatic[i] != (joint.kind == armgen_description::kinds::JointKind::Prismatic) {
+    for (i, coordinate) in manipulator.coordinates().into_iter().enumerate() {
+        if module.prismatic[i] != (coordinate.joint.kind == JointKind::Prismatic) {
             return Err(format!("PRISMATIC: joint {} is of the other kind", i + 1));
         }
         for (side, infinite) in ["Real::NEG_INFINITY", "Real::INFINITY"].into_iter().enumerate() {
             let text = module.limits[2 * i + side].as_str();
-            let right = match &joint.limits.position {
+            let right = match &coordinate.limits.position {
                 None => text == infinite,
                 Some(limits) => nearest(text, &formula(&limits[side])),
             };

@@ -26,7 +26,8 @@ use crate::kinds::Scalar;
 use crate::parallel::parallel_map;
 use crate::program::{EndEffector, Function, Joint, Module};
 pub(super) use inverse_kinematics::{
-    about_redundancy, about_target, items as items_of_inverse_kinematics, meanings, what_is_invalid,
+    about_redundancy, about_target, entries as entries_of_postures, items as items_of_inverse_kinematics, meanings,
+    what_is_invalid,
 };
 pub use inverse_kinematics::{print_inverse_kinematics, print_inverse_kinematics_test, print_inverse_kinematics_trait};
 use literal::literal;

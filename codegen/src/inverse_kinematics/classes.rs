@@ -279,7 +279,17 @@ fn solved(chain: &Chain, target: Target, length: &Number, found: Option<Class>) 
         format!("there is no construction for {word} and {} joints{slides} of this geometry", chain.joints.len())
     };
     let Class { construction, class, most, choices } = found.ok_or_else(none)?;
-    Ok(InverseKinematics { target, construction, class, most, choices, length: length.clone(), redundancy: None, own: None })
+    Ok(InverseKinematics {
+        target,
+        construction,
+        class,
+        most,
+        choices,
+        length: length.clone(),
+        redundancy: None,
+        own: None,
+        coordinates: None,
+    })
 }
 
 /// A class that fits.
@@ -368,6 +378,7 @@ pub(super) fn shoulder_elbow_wrist(chain: &Chain, length: &Number) -> Option<Inv
         length: length.clone(),
         redundancy: Some(Redundancy::Swivel),
         own: None,
+        coordinates: None,
     })
 }
 

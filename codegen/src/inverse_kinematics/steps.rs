@@ -51,6 +51,9 @@ impl InverseKinematics {
             all.steps.push(format!("{dropped} to be 0 up to rounding: Gauss and Newton's method on the other joints alone, by all six rows; what does not meet them is dropped"));
             all.singular = vec!["the arm's own Jacobian loses rank".into()];
         }
+        if let Some(coordinates) = &self.coordinates {
+            all.steps.push(format!("coordinates of the joint variables: {}", coordinates.sums()));
+        }
         all
     }
 }

@@ -547,3 +547,117 @@ pub(crate) fn robots() -> Vec<(String, String)> {
     robots.sort();
     robots
 }
+
+/// Arms with coupled joints: name, class, at most, description. The joints of the last one are not all between base and end effector.
+pub(crate) fn coupled() -> Vec<(&'static str, &'static str, usize, String)> {
+    let (o, q, minus) = ("0", "pi/2", "-pi/2");
+    let arm =
+        |name: &'static str, class, most, task: &str, rows: &[(&str, &str, &str, &str, &str)], couplings: &[(&str, &str)]| {
+            let text = couplings.iter().fold(description(name, task, rows), |text, (joint, coupling)| {
+                text.replacen(&format!("{{name: {joint}, "), &format!("{{name: {joint}, {coupling}, "), 1)
+            });
+            (name, class, most, text)
+        };
+    let elbow =
+        [(R, "0.1", q, "0.3", "0.1"), (R, "0.4", o, "0.1", o), (R, "0.35", o, "0.05", "0.3"), (R, "0.1", "0.2", "0.02", o)];
+    vec![
+        // The third axis is counted from the horizontal, and the wrist has shafts through each other.
+        arm(
+            "coupled_6r",
+            "spherical triple (axes 4 5 6 through one point), axes 2 and 3 are parallel; q1 to q6 are the variables of j1,",
+            8,
+            "",
+            &[
+                (R, "0.1", q, "0.3", "0.1"),
+                (R, "0.4", o, "0.1", o),
+                (R, "0.02", minus, "0.05", o),
+                (R, o, q, "0.35", o),
+                (R, o, minus, o, "0.2"),
+                (R, o, o, "0.1", o),
+            ],
+            &[
+                ("j3", "adds: {j2: -1}, offset: pi/2, limits: {position: [-2, 1]}"),
+                ("j5", "adds: {j4: -1}"),
+                ("j6", "adds: {j5: 2, j4: 1}, offset: 0.3, limits: {position: [-6, 9]}"),
+            ],
+        ),
+        arm(
+            "coupled_general",
+            "general",
+            16,
+            "",
+            &[
+                (R, "0.15", "0.9", "0.3", "0.1"),
+                (R, "0.4", "-1.1", "0.1", o),
+                (R, "0.35", "0.8", "0.05", "0.3"),
+                (R, "0.12", "1.3", "0.1", o),
+                (R, "0.07", "-1.2", "0.2", "0.2"),
+                (R, "0.02", "0.3", "0.1", o),
+            ],
+            &[("j2", "adds: {j1: 1}"), ("j5", "adds: {j2: -1}, offset: 7")],
+        ),
+        // The value of a joint is given, which is no coordinate.
+        arm(
+            "coupled_4r",
+            "position of three joints, axes 2 and 3 are parallel; q4 is given",
+            4,
+            "task: [x, y, z]",
+            &elbow,
+            &[("j4", "adds: {j3: 1}, offset: -1")],
+        ),
+        arm(
+            "coupled_swivel",
+            "shoulder, elbow, wrist",
+            8,
+            "",
+            &[
+                (R, o, minus, "0.36", o),
+                (R, o, q, o, o),
+                (R, o, q, "0.42", o),
+                (R, o, minus, o, o),
+                (R, o, minus, "0.4", o),
+                (R, o, q, o, o),
+                (R, o, o, "0.126", o),
+            ],
+            &[("j2", "adds: {j1: 1}"), ("j7", "adds: {j6: -3}")],
+        ),
+        // Joints turn as a slide moves; the slide itself has another slide before it.
+        arm(
+            "coupled_slides",
+            "position of three joints, joints 1 and 2 slide",
+            2,
+            "task: [x, y, z]",
+            &[(P, "0.2", "0.9", "0.3", "0.1"), (P, "0.4", "-1.1", "0.1", o), (R, "0.35", q, "0.05", "0.3")],
+            &[("j2", "adds: {j1: 2/3}"), ("j3", "adds: {j1: 0.5, j2: sqrt(2)}")],
+        ),
+        // Few joints, with virtual ones behind them.
+        arm(
+            "coupled_few",
+            "3 joints and",
+            8,
+            "tool: {xyz: [0.05, 0.02, 0.1], rpy: [0.2, 0.4, 0.5]}",
+            &[(R, "0.1", q, "0.3", o), (R, "0.4", o, o, o), (R, "0.3", o, o, o)],
+            &[("j3", "adds: {j2: 1}")],
+        ),
+        // Two bars in parallel: a crank beside the lower arm moves the upper one.
+        (
+            "coupled_bars",
+            "position of three joints, joint 3 slides, axes 2 and 1 are parallel; q1 to q2 are the variables of lower, forearm,",
+            2,
+            BARS.into(),
+        ),
+    ]
+}
+
+const BARS: &str = "name: coupled_bars
+convention: urdf
+gravity: [0, -9.81, 0]
+task: [x, y]
+tip: forearm
+tool: {xyz: [0.6, 0, 0]}
+joints:
+  - {name: lower, type: revolute, axis: [0, 0, 1], link: {mass: 8, com: [0.25, 0, 0], inertia: {xx: 0, yy: 0.2, zz: 0.2}}}
+  - {name: crank, type: revolute, parent: base, axis: [0, 0, 1], limits: {position: [-1, 2]}, link: {mass: 3, com: [0.1, 0, 0], inertia: {xx: 0, yy: 0.02, zz: 0.02}}}
+  - {name: forearm, type: revolute, parent: lower, origin: {xyz: [0.5, 0, 0]}, axis: [0, 0, 1], follows: {crank: 1, lower: -1}, link: {mass: 6, com: [0.2, 0, 0], inertia: {xx: 0, yy: 0.15, zz: 0.15}}}
+  - {name: rod, type: revolute, parent: crank, origin: {xyz: [-0.2, 0, 0]}, axis: [0, 0, 1], follows: {lower: 1, crank: -1}, link: {mass: 1.5, com: [0.25, 0, 0], inertia: {xx: 0, yy: 0.03, zz: 0.03}}}
+";

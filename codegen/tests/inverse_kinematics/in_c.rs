@@ -5,7 +5,7 @@ use std::process::Command;
 
 use armgen_codegen::Scalar;
 
-use super::arms::{few, generated, made_up, robots, workspace};
+use super::arms::{coupled, few, generated, made_up, robots, workspace};
 
 const WARNINGS: [&str; 6] = ["-Wall", "-Wextra", "-pedantic", "-Wconversion", "-Wshadow", "-Werror"];
 
@@ -46,6 +46,7 @@ fn arms(wanted: impl Fn(&str) -> bool) -> Vec<Arm> {
     let mut all = robots();
     all.extend(made_up().into_iter().map(|(name, _, _, text)| (name.to_owned(), text)));
     all.extend(few());
+    all.extend(coupled().into_iter().map(|(name, _, _, text)| (name.to_owned(), text)));
     let mut arms = Vec::new();
     for (name, text) in all.into_iter().filter(|(name, _)| wanted(name)) {
         for (scalar, suffix) in [(Scalar::F64, "f64"), (Scalar::F32, "f32")] {
@@ -131,7 +132,7 @@ fn compare(folder: &Path, arms: &[Arm], compilers: &[(&str, &[&str])], poses: us
 fn every_class_is_translated() {
     let one = |name: &str| !name.starts_with("few_") || name == FEW;
     let names: std::collections::BTreeSet<String> = arms(one).into_iter().map(|arm| arm.name).collect();
-    assert!(made_up().iter().all(|(name, ..)| names.contains(*name)) && names.contains(FEW), "{names:?}");
+    assert!(made_up().iter().chain(&coupled()).all(|(name, ..)| names.contains(*name)) && names.contains(FEW), "{names:?}");
 }
 
 /// What comments say is there: the constants of the loop under the name that they have, and of `t` what is read of it.
@@ -182,7 +183,7 @@ fn no_guard_is_that_of_another_robot() {
 #[ignore = "wide"]
 fn modules_in_c_have_the_bits_of_rust() {
     let folder = folder("inverse_kinematics_in_c");
-    let chosen = ["puma560", "panda7", "position3r", "general_angles", FEW];
+    let chosen = ["puma560", "panda7", "position3r", "general_angles", "coupled_6r", "coupled_swivel", "coupled_bars", FEW];
     compare(&folder, &arms(|name| chosen.contains(&name)), &[("gcc", &["-O1"])], 2000);
 }
 

@@ -29,6 +29,33 @@ pub struct Table {
     calls: Calls,
     given: Option<(Given, Option<usize>)>,
     own: Option<Arrangement<6>>,
+    coupled: Option<Coupled>,
+}
+
+/// Sums over the arm's joints or coordinates, zeros behind them.
+#[derive(Clone, Debug)]
+struct Sums {
+    factors: [[Real; MOST_JOINTS]; MOST_JOINTS],
+    offset: [Real; MOST_JOINTS],
+}
+
+/// The coordinates of coupled joints.
+#[derive(Clone, Debug)]
+struct Coupled {
+    joints: Vec<bool>,
+    variables: Sums,
+    coordinates: Sums,
+}
+
+fn sums(of: &super::Sums<Real>, dof: usize) -> Result<Sums, Unsound> {
+    if of.factors.len() != dof || of.offset.len() != dof || of.factors.iter().any(|row| row.len() != dof) {
+        return Err(Unsound("a coupling"));
+    }
+    let entry = |i: usize, j: usize| of.factors.get(i).and_then(|row| row.get(j)).copied().unwrap_or(0.0);
+    Ok(Sums {
+        factors: std::array::from_fn(|i| std::array::from_fn(|j| entry(i, j))),
+        offset: std::array::from_fn(|i| of.offset.get(i).copied().unwrap_or(0.0)),
+    })
 }
 
 fn regional(case: super::Case) -> Regional {
@@ -123,7 +150,15 @@ fn table(of: &InverseKinematics<Real>) -> Result<Table, Unsound> {
         return Err(Unsound("the target"));
     }
     let own = of.own.as_ref().map(arrangement).transpose()?;
-    Ok(Table { prismatic: of.prismatic.clone(), orientation: of.orientation, most: of.most, length: of.length, calls, given, own })
+    let coupled = of.coordinates.as_ref().map(|of| {
+        if of.joints.len() != dof {
+            return Err(Unsound("a coupling"));
+        }
+        Ok(Coupled { joints: of.joints.clone(), variables: sums(&of.variables, dof)?, coordinates: sums(&of.coordinates, dof)? })
+    });
+    let coupled = coupled.transpose()?;
+    let prismatic = of.prismatic.clone();
+    Ok(Table { prismatic, orientation: of.orientation, most: of.most, length: of.length, calls, given, own, coupled })
 }
 
 /// The result as it is handed on.
@@ -354,14 +389,28 @@ impl Table {
     }
 
     fn concluded<const J: usize, const N: usize, const D: usize>(&self, found: &Branches<J, N>, by_angle: bool) -> Postures<Real> {
-        let kinds = std::array::from_fn(|joint| self.prismatic.get(joint).copied().unwrap_or(false));
         match self.most {
-            1 => postures(&block::conclude::<J, N, D, 1>(found, kinds, by_angle)),
-            2 => postures(&block::conclude::<J, N, D, 2>(found, kinds, by_angle)),
-            4 => postures(&block::conclude::<J, N, D, 4>(found, kinds, by_angle)),
-            8 => postures(&block::conclude::<J, N, D, 8>(found, kinds, by_angle)),
-            _ => postures(&block::conclude::<J, N, D, 16>(found, kinds, by_angle)),
+            1 => self.at_most::<J, N, D, 1>(found, by_angle),
+            2 => self.at_most::<J, N, D, 2>(found, by_angle),
+            4 => self.at_most::<J, N, D, 4>(found, by_angle),
+            8 => self.at_most::<J, N, D, 8>(found, by_angle),
+            _ => self.at_most::<J, N, D, 16>(found, by_angle),
         }
+    }
+
+    fn at_most<const J: usize, const N: usize, const D: usize, const MOST: usize>(
+        &self,
+        found: &Branches<J, N>,
+        by_angle: bool,
+    ) -> Postures<Real> {
+        let kinds = |of: &[bool]| std::array::from_fn(|joint| of.get(joint).copied().unwrap_or(false));
+        let Some(Coupled { joints, coordinates, .. }) = &self.coupled else {
+            return postures(&block::conclude::<J, N, D, MOST>(found, kinds(&self.prismatic), by_angle));
+        };
+        let joints = block::conclude::<J, N, D, MOST>(found, kinds(joints), by_angle);
+        let factors = std::array::from_fn(|i| std::array::from_fn(|j| coordinates.factors[i][j]));
+        let offset = std::array::from_fn(|i| coordinates.offset[i]);
+        postures(&block::in_coordinates::<D, MOST>(&joints, factors, offset, kinds(&self.prismatic)))
     }
 }
 
@@ -388,6 +437,13 @@ impl Solved for Real {
             (Calls::ShoulderElbowWrist(way), Ok(q)) => Some(block::swivel_angle(way, &q)),
             _ => None,
         }
+    }
+
+    fn variables(table: &Table, q: &[Real]) -> Vec<Real> {
+        let Some(Coupled { variables, .. }) = &table.coupled else { return q.to_vec() };
+        let mut all = block::sums_of(&posture(q).q, variables.factors, variables.offset).to_vec();
+        all.truncate(q.len());
+        all
     }
 
     fn within(table: &Table, q: &mut [Real], limits: impl Fn(usize) -> [Real; 2]) -> bool {

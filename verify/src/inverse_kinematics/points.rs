@@ -49,13 +49,12 @@ impl Constants {
     }
 }
 
-/// The arm without masses: no solution depends on bodies, whose formulas can be long.
+/// The chain of joints to the end effector without masses: no solution depends on bodies, whose formulas can be long.
 pub(super) fn without_bodies(manipulator: &Manipulator) -> Manipulator {
-    let mut arm = manipulator.clone();
+    let mut arm = manipulator.chain();
     arm.payload = None;
     arm.tips.clear();
     for joint in &mut arm.joints {
-        joint.motor = None;
         joint.link.truncate(1);
         for part in &mut joint.link {
             part.given = Body { mass: Polynomial::zero(), com: Default::default(), inertia: Default::default() };

@@ -247,6 +247,59 @@ fn made_up() -> Vec<(&'static str, usize, String)> {
     ]
 }
 
+/// Arms with coupled joints: name, number of solutions, description.
+fn coupled() -> Vec<(&'static str, usize, String)> {
+    let arm = |name: &'static str, of: &str, couplings: &[(&str, &str)]| {
+        let (_, solutions, text) = made_up().into_iter().find(|(arm, ..)| *arm == of).expect("an arm");
+        let text = couplings.iter().fold(text, |text, (joint, coupling)| {
+            text.replacen(&format!("{{name: {joint}, "), &format!("{{name: {joint}, {coupling}, "), 1)
+        });
+        (name, solutions, text)
+    };
+    vec![
+        arm(
+            "coupled wrist",
+            "offset shoulder",
+            &[
+                ("j3", "adds: {j2: 1}, limits: {position: [-2, 1]}"),
+                ("j5", "adds: {j4: -1}"),
+                ("j6", "adds: {j5: 2}, offset: 0.3"),
+            ],
+        ),
+        arm("coupled plane", "planar", &[("j3", "adds: {j1: -1, j2: -1}, offset: 1/2")]),
+        arm("coupled and q4", "position and q4", &[("j4", "adds: {j3: 1}, offset: -1")]),
+        arm("coupled slide", "track", &[("j2", "adds: {j1: 1/2}")]),
+    ]
+}
+
+/// The chain is verified as an arm of its own, and the numbers that turn its solutions into coordinates against the coupling.
+#[test]
+fn coupled_arms_are_verified() {
+    for (name, solutions, text) in coupled() {
+        let (source, text) = module(&text);
+        let report = verify(&source, &text, 8);
+        assert!(report.passed(), "{name}: {report}");
+        assert_eq!(report.generic.as_ref().map(|generic| generic.0), Some(solutions), "{name}: {report}");
+        let fault = |old: &str, new: &str| fault_of(&source, &text, [old, new]);
+        assert!(fault("const JOINT_SLIDES", "const JOINTS_SLIDE").contains("should stand where"), "{name}");
+        let fault = fault_of(
+            &source,
+            &text,
+            ["joints, COORDINATES, COORDINATE_OFFSET, PRISMATIC", "joints, COORDINATES, [0.0; DOF], PRISMATIC"],
+        );
+        assert!(fault.contains("should stand where"), "{name}: {fault}");
+    }
+    // The module of the chain alone is not that of the arm, nor the other way round.
+    let (_, _, text) = coupled().remove(1);
+    let alone = text.replacen("adds: {j1: -1, j2: -1}, offset: 1/2, ", "", 1);
+    assert_ne!(alone, text);
+    for (of, by) in [(&text, &alone), (&alone, &text)] {
+        let (source, module_text) = (Source::new("robot.yaml", of.as_str()), module(by).1);
+        let fault = verify(&source, &module_text, 0).faults.pop().unwrap_or_default();
+        assert!(fault.contains("an arm has them if its joints are coupled"), "{fault}");
+    }
+}
+
 /// Arms of seven joints with a given joint: between two others, in the loop read forwards and backwards; the last joint; and a shoulder and a
 /// wrist with an offset at the elbow.
 fn redundant() -> Vec<(&'static str, usize, String)> {
@@ -522,7 +575,10 @@ type Fault<'a> = &'a dyn Fn() -> Option<String>;
 
 /// The purpose of each check; `peel` omits the checks that refuse a trick, in turn.
 pub(crate) fn tricks(peel: &mut dyn FnMut(&str, &[(Check, &'static str)], Fault<'_>)) {
-    use Check::{Branches, Class, Counts, Limits, Loop, LoopNumbers, Meeting, MostSolutions, Reached, Sound, WholeText};
+    use Check::{
+        Branches, Class, Coordinates, Counts, Limits, Loop, LoopNumbers, Meeting, MostSolutions, Reached, Sound, WholeText,
+        WholeTurns,
+    };
     let shoulder = made_up_arm("offset shoulder");
     let (source, text) = module(&shoulder);
     let mut edited = |old: &str, new: &str, layers: &[(Check, &'static str)]| {
@@ -548,6 +604,24 @@ pub(crate) fn tricks(peel: &mut dyn FnMut(&str, &[(Check, &'static str)], Fault<
     let labels = &text[text.find("pub const BRANCHES").expect("branches")..];
     let label = format!("\"{}\"", labels.split('"').nth(1).expect("a label"));
     edited(&label, "\"\"", &[(Branches, "BRANCHES: 7 of them, and there are 8")]);
+    let (_, _, whole) = coupled().remove(0);
+    let (source, text) = module(&whole);
+    let row = "[0.0, -1.0, 1.0, 0.0, 0.0, 0.0]";
+    assert!(text.contains(row), "{text}");
+    let trick = text.replacen(row, "[0.0, -1.5, 1.0, 0.0, 0.0, 0.0]", 1);
+    let layers = [(Coordinates, "COORDINATES: -1.5 is not the float nearest to -1"), (WholeText, "where armgen writes")];
+    peel("one and a half of a joint", &layers, &|| verify(&source, &trick, 0).faults.pop());
+    // A joint that turns by half of another one beside its coordinate, with numbers that are right.
+    let half = Source::new("robot.yaml", whole.replacen("adds: {j2: 1}", "adds: {j2: 1/2}", 1));
+    let [of_whole, of_half] = [&source, &half].map(|source| crate::hash(source.text())[..16].to_owned());
+    let trick = text.replace(&of_whole, &of_half).replacen(row, &row.replace("-1.0", "-0.5"), 1);
+    let mut right = proposal(&source, &crate::arm(&source).expect("a valid arm"), &text);
+    let values = right.values.as_mut().expect("a construction");
+    let minus_half = -&(Number::one().checked_div(&Number::from(2)).expect("a fraction"));
+    values.coordinates.as_mut().expect("it is coupled").0[2][1] = minus_half;
+    right.rust.clone_from(&trick);
+    let layers = [(WholeTurns, "whole turns of joints and of coordinates are not the same")];
+    peel("half turns", &layers, &|| super::verify(&half, &trick, &right, 0).faults.pop());
     // Solutions off the pose; a count off by one; an ignored double solution.
     let roots = |real, multiple| Count::Finite(super::sturm::Roots { distinct: 8, real, multiple });
     let eight = run::Outcome { verdict: Verdict::Complete, solutions: vec![vec![]; 8] };

@@ -41,6 +41,17 @@ pub(super) struct Given {
     pub(super) numbers: Vec<String>,
 }
 
+/// The constants between joint variables and coordinates.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct Coordinates {
+    /// Whether each joint of the chain slides.
+    pub(super) slides: Vec<bool>,
+    /// The numbers of coordinates over joint variables as in the text: factors by rows, then constants.
+    pub(super) numbers: Vec<String>,
+    /// Those of joint variables over coordinates; none without a redundancy.
+    pub(super) back: Vec<String>,
+}
+
 /// The construction that the function calls.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(super) enum Construction {
@@ -69,6 +80,8 @@ pub(super) struct Text {
     pub(super) given: Option<Given>,
     /// The loop of the arm's own joints, if there are virtual joints, which must come out 0.
     pub(super) own: Option<Arrangement>,
+    /// The coordinates of coupled joints.
+    pub(super) coordinates: Option<Coordinates>,
     /// Whether the function uses the orientation, not only the position.
     pub(super) rotation: bool,
 }
@@ -259,6 +272,18 @@ fn given(value: &Value) -> Result<Given, String> {
     }
 }
 
+/// The numbers of sums: a square of factors, and constants.
+fn sums(reader: &mut Reader<'_>, [factors, offset]: [&str; 2], dof: usize) -> Result<Vec<String>, String> {
+    let (mut numbers, mut constants) = (Vec::new(), Vec::new());
+    reader.constant(factors, "[[Real;DOF];DOF]")?.leaves(&mut numbers);
+    reader.constant(offset, "[Real;DOF]")?.leaves(&mut constants);
+    if numbers.len() != dof * dof || constants.len() != dof {
+        return Err(format!("{factors} has not as many numbers as it should"));
+    }
+    numbers.append(&mut constants);
+    Ok(numbers)
+}
+
 const EXPORT: &str = "#[allow(unused_imports)]pubuseself::all_solutions::{inverse_kinematics,";
 const HEAD: &str = "Posture,Postures,Real,Solution,Solutions,Verdict,BRANCHES,DOF,MAX_SOLUTIONS};\
                     #[allow(dead_code,unreachable_pub,clippy::all,clippy::pedantic)]#[rustfmt::skip]modall_solutions{";
@@ -285,23 +310,44 @@ const POLISH_POSITION: &str =
     "letlinks=[a,b,displaced(from)];polish(&mutfound,&Loop{links:&links,prismatic:LOOP.prismatic,target:to,length:LENGTH});";
 const IN_ORDER: &str = "letcount=found.count;forbranchinfound.all.iter_mut().take(count){*branch=LOOP.of_arm(branch);}";
 
+/// What the text of a function depends on.
+#[derive(Clone, Copy)]
+struct Shape {
+    dof: usize,
+    given: bool,
+    /// The point of a position lies after a given last joint.
+    tip: bool,
+    own: bool,
+    coupled: bool,
+}
+
+impl Shape {
+    /// The end of the function.
+    fn concluded(self, solutions: &str, by_angle: bool) -> String {
+        if self.coupled {
+            format!(
+                "letjoints:Solutions=conclude({solutions},JOINT_SLIDES,{by_angle});\
+                 in_coordinates(&joints,COORDINATES,COORDINATE_OFFSET,PRISMATIC)}}"
+            )
+        } else {
+            format!("conclude({solutions},PRISMATIC,{by_angle})}}")
+        }
+    }
+}
+
 /// The function after its check of the arguments; also returns the place of the link that a given joint moves.
-///
-/// - `tip`: the point of a position lies after a given last joint.
-fn body(
-    reader: &mut Reader<'_>,
-    loops: &[Arrangement],
-    (dof, given, tip, own): (usize, bool, bool, bool),
-) -> Result<(Construction, Option<usize>), String> {
+fn body(reader: &mut Reader<'_>, loops: &[Arrangement], shape: Shape) -> Result<(Construction, Option<usize>), String> {
+    let Shape { dof, given, tip, own, .. } = shape;
     let name = |reader: &mut Reader<'_>, end: char| reader.until(end).map(str::to_owned);
     let all = joints_with_given(loops, dof);
-    if reader.take(&if own {
-        "conclude(&without_virtual_joints::<6,DOF,16>(&ARM,&general_arm(&LOOPS,&t,LENGTH),&t,LENGTH,GENERAL_ROWS),PRISMATIC,true)}".into()
+    let general = if own {
+        "&without_virtual_joints::<6,DOF,16>(&ARM,&general_arm(&LOOPS,&t,LENGTH),&t,LENGTH,GENERAL_ROWS)".into()
     } else if given {
-        format!("conclude(&GIVEN.with::<6,{all},16>(&general_arm(&LOOPS,&t,LENGTH),value),PRISMATIC,true)}}")
+        format!("&GIVEN.with::<6,{all},16>(&general_arm(&LOOPS,&t,LENGTH),value)")
     } else {
-        "conclude(&general_arm(&LOOPS,&t,LENGTH),PRISMATIC,true)}".to_owned()
-    }) {
+        "&general_arm(&LOOPS,&t,LENGTH)".to_owned()
+    };
+    if reader.take(&shape.concluded(&general, true)) {
         return Ok((Construction::General, None));
     }
     let mut moved = None;
@@ -312,7 +358,7 @@ fn body(
     }
     if point {
         let construction = position(reader, loops, (tip, true))?;
-        return conclusion(reader, loops, (dof, given, own), construction).map(|construction| (construction, moved));
+        return conclusion(reader, loops, shape, construction).map(|construction| (construction, moved));
     }
     let links = moved.is_some() || reader.take(LINKS);
     let construction = if links && reader.take("letmutfound=spherical_triple(&links,") {
@@ -349,7 +395,7 @@ fn body(
     } else {
         position(reader, loops, (tip, false))?
     };
-    conclusion(reader, loops, (dof, given, own), construction).map(|construction| (construction, moved))
+    conclusion(reader, loops, shape, construction).map(|construction| (construction, moved))
 }
 
 /// Whether Newton's method is called for all solutions. Otherwise it handles coincident solutions only, or an arm's `own` joints, refined later.
@@ -396,24 +442,24 @@ fn joints_with_given(loops: &[Arrangement], dof: usize) -> String {
 fn conclusion(
     reader: &mut Reader<'_>,
     loops: &[Arrangement],
-    (dof, given, own): (usize, bool, bool),
+    shape: Shape,
     construction: Construction,
 ) -> Result<Construction, String> {
     reader.expect(IN_ORDER)?;
     // Without branches, the conclusion uses the joint variables.
     let by_angle = matches!(construction, Construction::TwoSlides { .. });
-    if given {
+    let solutions = if shape.given {
         let others = loops.first().map_or(0, |way| way.order.len());
-        let all = joints_with_given(loops, dof);
+        let all = joints_with_given(loops, shape.dof);
         let most = if others == 6 { 8 } else { 4 };
-        reader.expect(&format!("conclude(&GIVEN.with::<{others},{all},{most}>(&found,value),"))?;
-    } else if own {
+        format!("&GIVEN.with::<{others},{all},{most}>(&found,value)")
+    } else if shape.own {
         let sizes = if matches!(construction, Construction::ParallelTurns { .. }) { "4,DOF,4" } else { "6,DOF,8" };
-        reader.expect(&format!("conclude(&without_virtual_joints::<{sizes}>(&ARM,&found,&t,LENGTH,ROUNDING),"))?;
+        format!("&without_virtual_joints::<{sizes}>(&ARM,&found,&t,LENGTH,ROUNDING)")
     } else {
-        reader.expect("conclude(&found,")?;
-    }
-    reader.expect(if by_angle { "PRISMATIC,true)}" } else { "PRISMATIC,false)}" })?;
+        "&found".to_owned()
+    };
+    reader.expect(&shape.concluded(&solutions, by_angle))?;
     Ok(construction)
 }
 
@@ -479,6 +525,14 @@ impl Text {
             joint = Some(given(&reader.value()?)?);
             reader.expect(";")?;
         }
+        let coordinates = if reader.rest.starts_with("constJOINT_SLIDES") {
+            let slides = bools(&reader.constant("JOINT_SLIDES", "[bool;DOF]")?)?;
+            let numbers = sums(&mut reader, ["COORDINATES", "COORDINATE_OFFSET"], dof)?;
+            let back = if redundant { sums(&mut reader, ["COUPLING", "COUPLING_OFFSET"], dof)? } else { Vec::new() };
+            Some(Coordinates { slides, numbers, back })
+        } else {
+            None
+        };
         reader.expect(if redundant { BEGIN_REDUNDANT } else { BEGIN })?;
         let rotation = reader.take(if redundant { ROTATION_REDUNDANT } else { ROTATION });
         if !rotation {
@@ -500,7 +554,9 @@ impl Text {
                 reader.expect(POSE)?;
             }
         }
-        let (construction, moved) = body(&mut reader, &loops, (dof, joint.is_some(), tip, own.is_some()))?;
+        let (given, coupled) = (joint.is_some(), coordinates.is_some());
+        let shape = Shape { dof, given, tip, own: own.is_some(), coupled };
+        let (construction, moved) = body(&mut reader, &loops, shape)?;
         let first = loops.first_mut().ok_or("there is no loop")?;
         if moved.is_some_and(|place| place >= first.order.len() || place == first.open) {
             return Err("the place of the joint that is given is none".into());
@@ -519,8 +575,13 @@ impl Text {
             return Err("what is read of the pose is not what the construction asks for".into());
         }
         if redundant {
-            let value = joint.as_ref().map_or("swivel_angle(&LOOP,q)".to_owned(), |joint| format!("q[{}]", joint.joint));
-            reader.expect(&format!("pubfninverse_kinematics_redundancy(q:&[Real;DOF])->Real{{{value}}}"))?;
+            let (read, swivel, name) = match coupled {
+                true => ("letvariables=sums_of(q,COUPLING,COUPLING_OFFSET);", "&variables", "variables"),
+                false => ("", "q", "q"),
+            };
+            let value =
+                joint.as_ref().map_or(format!("swivel_angle(&LOOP,{swivel})"), |joint| format!("{name}[{}]", joint.joint));
+            reader.expect(&format!("pubfninverse_kinematics_redundancy(q:&[Real;DOF])->Real{{{read}{value}}}"))?;
         }
         if (construction == Construction::ShoulderElbowWrist) != (redundant && joint.is_none()) {
             return Err("what is given is not what the construction asks for".into());
@@ -536,6 +597,7 @@ impl Text {
             return Err("something stands behind the function".into());
         }
         let whole = branches.len() == number && prismatic.len() == dof && limits.len() == 2 * dof && length.len() == 1;
+        let whole = whole && coordinates.as_ref().is_none_or(|of| of.slides.len() == dof);
         let loops_fit = match construction {
             Construction::General => loops.len() == 2 && loops.iter().all(|way| way.order.len() == 6),
             _ => loops.len() == 1 && loops[0].order.len() + usize::from(joint.is_some()) >= dof,
@@ -555,6 +617,7 @@ impl Text {
             construction,
             given: joint,
             own,
+            coordinates,
             rotation,
         }))
     }

@@ -98,11 +98,12 @@ pub(super) fn types(names: &Names, found: &InverseKinematics, way: &str) -> Stri
         text += &said(&rust::meanings(found, way).iter().map(|line| line.trim().to_owned()).collect::<Vec<_>>());
         text += &format!("#define {upper}_BRANCHES {{ \\\n{names}}}\n");
     }
+    let [entries, entry] = rust::entries_of_postures(found);
     text + &format!(
-        "\n/* One posture. */\ntypedef struct {{\n    {real} q[{dof}]; /* joint variables: angles in (-pi, pi], rad; lengths, m */\n    \
+        "\n/* One posture. */\ntypedef struct {{\n    {real} q[{dof}]; /* {entries}: angles in (-pi, pi], rad; lengths, m */\n    \
          uint32_t branch; /* which of the construction's ways leads here */\n    \
          uint32_t is_double; /* 1: two solutions meet here */\n    \
-         uint32_t free; /* bit i: joint i + 1 has one of many values, which the construction chose */\n}} {robot}_solution;\n\n\
+         uint32_t free; /* bit i: {entry} i + 1 has one of many values, which the construction chose */\n}} {robot}_solution;\n\n\
          /* All postures that reach a {target}. */\ntypedef struct {{\n    uint32_t verdict;\n    uint32_t count;\n    \
          {real} miss; /* where there is none: by how much the construction missed, a hint; otherwise 0 */\n    \
          {robot}_solution all[{upper}_MAX_SOLUTIONS]; /* zeros from count on */\n}} {robot}_solutions;\n\n"
@@ -113,7 +114,7 @@ pub(super) fn types(names: &Names, found: &InverseKinematics, way: &str) -> Stri
 pub(super) fn functions(names: &Names, found: &InverseKinematics) -> Vec<(String, String)> {
     let Names { robot, real, joints: dof, .. } = names;
     let mut about = vec![
-        format!("All joint variables that take the end effector to the {} of t.", reached(found.target)),
+        format!("All {} that take the end effector to the {} of t.", rust::entries_of_postures(found)[0], reached(found.target)),
         format!("t: {}.", rust::about_target(found.target)),
     ];
     about.extend(rust::about_redundancy(found).map(|about| format!("redundancy: {about}.")));
@@ -128,8 +129,11 @@ pub(super) fn functions(names: &Names, found: &InverseKinematics) -> Vec<(String
             format!("{real} {robot}_inverse_kinematics_redundancy(const {real} q[{dof}])"),
         ));
     }
+    let [_, entry] = rust::entries_of_postures(found);
     functions.push((
-        said(&["Those of the postures that are within the limits of the joints, angles moved by whole turns into them.".into()]),
+        said(&[format!(
+            "Those of the postures that are within the limits of the {entry}s, angles moved by whole turns into them."
+        )]),
         format!("void {robot}_within_limits(\n    const {robot}_solutions *solutions,\n    {robot}_solutions *within)"),
     ));
     functions.push((

@@ -107,13 +107,13 @@ pub fn print(
             return Ok(said(&crate::emit::head::lines(origin, &[format!("There is no inverse kinematics: {reason}.")])))
         }
     };
-    let names = Names::of(&manipulator.name, scalar, manipulator.joints.len());
+    let names = Names::of(&manipulator.name, scalar, manipulator.dof());
     // Everything that is no caller's business has a longer name.
     let (inner, macros) = (format!("{}_ik", names.robot), format!("{}_IK", names.upper));
     let mut wanted = vec!["inverse_kinematics"];
     wanted.extend(found.redundancy.as_ref().map(|_| "inverse_kinematics_redundancy"));
     wanted.extend(["Solutions::within_limits", "Solutions::nearest_to"]);
-    let source = rust::items_of_inverse_kinematics(&manipulator.joints, scalar, found);
+    let source = rust::items_of_inverse_kinematics(manipulator, scalar, found);
     let blocks = translated(&source, &wanted, &inner, &macros)
         .map_err(|reason| format!("inverse kinematics of this arm is not there in C, {reason}; this is a fault of armgen"))?;
     let own = |text: &str| of_robot(text, &inner, &macros);

@@ -9,9 +9,9 @@ use super::runtime::is_implemented;
 use super::signature::usize_literal;
 use super::{format, head};
 use crate::emit::Origin;
-use crate::inverse_kinematics::{Arrangement, Construction, Frame, InverseKinematics, Redundancy, Regional, Target};
+use crate::inverse_kinematics::{Arrangement, Construction, Frame, InverseKinematics, Redundancy, Regional, Sums, Target};
 use crate::kinds::{JointKind, Scalar};
-use crate::manipulator::{Joint, Manipulator};
+use crate::manipulator::Manipulator;
 use crate::program::Module;
 
 /// The module's text. For an arm without a construction it is a comment with the reason.
@@ -26,7 +26,7 @@ pub fn print_inverse_kinematics(
         Err(reason) => head(origin, &[]) + &lines(&format!("There is no `inverse_kinematics`: {reason}.")),
         Ok(found) => {
             let class = format!("Inverse kinematics: {}; at most {} solutions.\n", found.class, found.most);
-            head(origin, &[]) + &lines(&class) + "\n" + &format(exported(found)) + &solver(&manipulator.joints, scalar, found)
+            head(origin, &[]) + &lines(&class) + "\n" + &format(exported(found)) + &solver(manipulator, scalar, found)
         }
     }
 }
@@ -143,19 +143,19 @@ fn exported(found: &InverseKinematics) -> TokenStream {
 }
 
 /// The module of the blocks.
-fn solver(joints: &[Joint], scalar: Scalar, found: &InverseKinematics) -> String {
+fn solver(manipulator: &Manipulator, scalar: Scalar, found: &InverseKinematics) -> String {
     let mut text = String::from(
         "\n/// The construction and its building blocks.\n#[allow(dead_code, unreachable_pub, clippy::all, clippy::pedantic)]\n#[rustfmt::skip]\nmod all_solutions {\n\n",
     );
-    text += &items(joints, scalar, found);
+    text += &items(manipulator, scalar, found);
     text + "}\n"
 }
 
 /// The items in the module of the blocks: constants, one function, and the blocks that it calls.
-pub(in crate::emit) fn items(joints: &[Joint], scalar: Scalar, found: &InverseKinematics) -> String {
-    let mut text = format(constants(joints, scalar, found));
+pub(in crate::emit) fn items(manipulator: &Manipulator, scalar: Scalar, found: &InverseKinematics) -> String {
+    let mut text = format(constants(manipulator, scalar, found));
     text.push('\n');
-    text += &format(function(found, joints.len()));
+    text += &format(function(found, manipulator.dof()));
     for block in needed(scalar, found) {
         text.push('\n');
         text += block.source;
@@ -172,6 +172,7 @@ fn needed(scalar: Scalar, found: &InverseKinematics) -> Vec<&'static Text> {
     let mut names = vec![scalar, "arrangement", "solutions"];
     names.extend(found.given().map(|_| "given"));
     names.extend(found.own.as_ref().map(|_| "virtual_joints"));
+    names.extend(found.coordinates.as_ref().map(|_| "coordinates"));
     match &found.construction {
         Construction::SphericalTriple(_, case) => {
             names.extend(["spherical_triple", case.text]);
@@ -202,10 +203,19 @@ fn needed(scalar: Scalar, found: &InverseKinematics) -> Vec<&'static Text> {
     texts
 }
 
-fn constants(joints: &[Joint], scalar: Scalar, found: &InverseKinematics) -> TokenStream {
-    let (dof, most) = (usize_literal(joints.len()), usize_literal(found.most));
-    let prismatic = joints.iter().map(|joint| joint.kind == JointKind::Prismatic);
-    let limits = joints.iter().map(|joint| match &joint.limits.position {
+/// What the postures consist of, and one of them.
+pub(in crate::emit) fn entries(found: &InverseKinematics) -> [&'static str; 2] {
+    match found.coordinates {
+        None => ["joint variables", "joint"],
+        Some(_) => ["coordinates", "coordinate"],
+    }
+}
+
+fn constants(manipulator: &Manipulator, scalar: Scalar, found: &InverseKinematics) -> TokenStream {
+    let coordinates = manipulator.coordinates();
+    let (dof, most) = (usize_literal(coordinates.len()), usize_literal(found.most));
+    let prismatic = coordinates.iter().map(|coordinate| coordinate.joint.kind == JointKind::Prismatic);
+    let limits = coordinates.iter().map(|coordinate| match &coordinate.limits.position {
         None => quote!([Real::NEG_INFINITY, Real::INFINITY]),
         Some(limits) => {
             let [low, high] = limits.each_ref().map(|limit| literal(limit, scalar));
@@ -247,23 +257,69 @@ fn constants(joints: &[Joint], scalar: Scalar, found: &InverseKinematics) -> Tok
             const GIVEN: Given = Given { joint: #joint, prismatic: #prismatic, before: #before, after: #after };
         }
     });
+    let [_, entry] = entries(found);
+    let lowest = match found.coordinates {
+        None => "joint variable",
+        Some(_) => "coordinate",
+    };
+    let about = [
+        format!(" Number of {entry}s."),
+        format!(" Whether a {entry} slides."),
+        format!(" Lowest and highest {lowest}, rad or m; infinite where the description gives none."),
+    ];
+    let [number, slides, lowest] = &about;
+    let coupled = coupled(scalar, found);
     quote! {
-        /// Number of joints.
+        #[doc = #number]
         pub const DOF: usize = #dof;
         /// At most so many postures reach a pose, where they are finitely many.
         pub const MAX_SOLUTIONS: usize = #most;
         #(#[doc = #meanings])*
         pub const BRANCHES: [&str; #count] = [#(#branches),*];
-        /// Whether a joint slides.
+        #[doc = #slides]
         const PRISMATIC: [bool; DOF] = [#(#prismatic),*];
-        /// Lowest and highest joint variable, rad or m; infinite where the description gives none.
+        #[doc = #lowest]
         const POSITION_LIMITS: [[Real; 2]; DOF] = [#(#limits),*];
         /// The arm's largest length, m.
         const LENGTH: Real = #length;
         #loops
         #own
         #given
+        #coupled
     }
+}
+
+/// The constants between joint variables and coordinates.
+fn coupled(scalar: Scalar, found: &InverseKinematics) -> Option<TokenStream> {
+    let coordinates = found.coordinates.as_ref()?;
+    let parts = |sums: &Sums| {
+        let rows = sums.factors.iter().map(|row| {
+            let factors = row.iter().map(|factor| literal(factor, scalar));
+            quote!([#(#factors),*])
+        });
+        let offset = sums.offset.iter().map(|constant| literal(constant, scalar));
+        (quote!([#(#rows),*]), quote!([#(#offset),*]))
+    };
+    let back = found.redundancy.as_ref().map(|_| {
+        let (factors, offset) = parts(&coordinates.variables);
+        quote! {
+            /// Joint variables q over coordinates p: q = `COUPLING` p + `COUPLING_OFFSET`.
+            const COUPLING: [[Real; DOF]; DOF] = #factors;
+            /// See `COUPLING`, rad or m.
+            const COUPLING_OFFSET: [Real; DOF] = #offset;
+        }
+    });
+    let (factors, offset) = parts(&coordinates.coordinates);
+    let slides = &coordinates.slides;
+    Some(quote! {
+        /// Whether a joint slides, of those from the base to the end effector.
+        const JOINT_SLIDES: [bool; DOF] = [#(#slides),*];
+        /// Coordinates p over joint variables q: p = `COORDINATES` q + `COORDINATE_OFFSET`.
+        const COORDINATES: [[Real; DOF]; DOF] = #factors;
+        /// See `COORDINATES`, rad or m.
+        const COORDINATE_OFFSET: [Real; DOF] = #offset;
+        #back
+    })
 }
 
 /// The documentation of `BRANCHES`: the meaning of each bit. `way` names the item with the constants of the loop, in words.
@@ -387,15 +443,18 @@ fn function(found: &InverseKinematics, dof: usize) -> TokenStream {
         quote!(#[doc = #about])
     });
     let redundancy = redundancy_of_a_posture(found);
+    let [entries, entry] = entries(found);
+    let all = format!(" All {entries} q with direct_kinematics(q) = t.");
+    let free = format!(" effector stays, and those whose values the construction chose have a bit in `free` (bit i: {entry} i + 1). What `armgen verify` says");
     quote! {
-        /// All joint variables q with direct_kinematics(q) = t.
+        #[doc = #all]
         ///
         #[doc = #target]
         #about
         ///
         /// The verdict says what is known: `Complete`, all solutions are listed; `Unreachable`, there is none, and `miss` says by how much
         /// the construction missed; `NearDouble`, the rounding of t decides about some; `Continuum`, some joints can move while the end
-        /// effector stays, and those whose values the construction chose have a bit in `free` (bit i: joint i + 1). What `armgen verify` says
+        #[doc = #free]
         /// of this text holds in exact arithmetic at general poses; in floats, next to poses where solutions meet, the first two can be
         /// wrong.
         #[doc = #invalid]
@@ -507,14 +566,14 @@ fn solutions(found: &InverseKinematics, dof: usize) -> TokenStream {
         },
         Construction::General(_) if found.given().is_some() => {
             let all = joints_with_given(6, dof);
-            quote!(conclude(&GIVEN.with::<6, #all, 16>(&general_arm(&LOOPS, &t, LENGTH), value), PRISMATIC, true))
+            concluded(found, &quote!(&GIVEN.with::<6, #all, 16>(&general_arm(&LOOPS, &t, LENGTH), value)), true)
         }
-        Construction::General(_) if found.own.is_some() => quote! {
-            conclude(&without_virtual_joints::<6, DOF, 16>(&ARM, &general_arm(&LOOPS, &t, LENGTH), &t, LENGTH, GENERAL_ROWS), PRISMATIC, true)
-        },
-        Construction::General(_) => quote! {
-            conclude(&general_arm(&LOOPS, &t, LENGTH), PRISMATIC, true)
-        },
+        Construction::General(_) if found.own.is_some() => {
+            let own =
+                quote!(&without_virtual_joints::<6, DOF, 16>(&ARM, &general_arm(&LOOPS, &t, LENGTH), &t, LENGTH, GENERAL_ROWS));
+            concluded(found, &own, true)
+        }
+        Construction::General(_) => concluded(found, &quote!(&general_arm(&LOOPS, &t, LENGTH)), true),
     }
 }
 
@@ -561,22 +620,34 @@ fn position(found: &InverseKinematics, way: &Arrangement, case: &Regional) -> To
 fn conclusion(found: &InverseKinematics, dof: usize) -> TokenStream {
     // Solutions without branches come in the order of their joint variables.
     let by_angle = matches!(found.construction, Construction::TwoSlides(..));
-    match (found.given(), &found.own) {
-        (None, None) => quote!(conclude(&found, PRISMATIC, #by_angle)),
+    let solutions = match (found.given(), &found.own) {
+        (None, None) => quote!(&found),
         (None, Some(_)) => {
             let (joints, most) = match &found.construction {
                 Construction::ParallelTurns(..) => (4, 4),
                 _ => (6, 8),
             };
             let (joints, most) = (usize_literal(joints), usize_literal(most));
-            quote!(conclude(&without_virtual_joints::<#joints, DOF, #most>(&ARM, &found, &t, LENGTH, ROUNDING), PRISMATIC, #by_angle))
+            quote!(&without_virtual_joints::<#joints, DOF, #most>(&ARM, &found, &t, LENGTH, ROUNDING))
         }
         (Some(_), _) => {
             let others = found.loops().first().map_or(0, |way| way.order.len());
             let all = joints_with_given(others, dof);
             let (others, most) = (usize_literal(others), usize_literal(if others == 6 { 8 } else { 4 }));
-            quote!(conclude(&GIVEN.with::<#others, #all, #most>(&found, value), PRISMATIC, #by_angle))
+            quote!(&GIVEN.with::<#others, #all, #most>(&found, value))
         }
+    };
+    concluded(found, &solutions, by_angle)
+}
+
+/// The expression for the postures of solutions of the arm's joints, in its coordinates.
+fn concluded(found: &InverseKinematics, solutions: &TokenStream, by_angle: bool) -> TokenStream {
+    match found.coordinates {
+        None => quote!(conclude(#solutions, PRISMATIC, #by_angle)),
+        Some(_) => quote! {
+            let joints: Solutions = conclude(#solutions, JOINT_SLIDES, #by_angle);
+            in_coordinates(&joints, COORDINATES, COORDINATE_OFFSET, PRISMATIC)
+        },
     }
 }
 
@@ -645,12 +716,18 @@ fn arguments_read(found: &InverseKinematics) -> TokenStream {
 /// The function that returns the redundancy of a posture, for a redundant arm.
 fn redundancy_of_a_posture(found: &InverseKinematics) -> Option<TokenStream> {
     found.redundancy.as_ref().map(|redundancy| {
-        let value = match redundancy {
-            Redundancy::Joint(given) => {
+        let variables = found.coordinates.as_ref().map(|_| quote!(let variables = sums_of(q, COUPLING, COUPLING_OFFSET);));
+        let value = match (redundancy, &variables) {
+            (Redundancy::Joint(given), None) => {
                 let joint = usize_literal(given.joint);
                 quote!(q[#joint])
             }
-            Redundancy::Swivel => quote!(swivel_angle(&LOOP, q)),
+            (Redundancy::Joint(given), Some(variables)) => {
+                let joint = usize_literal(given.joint);
+                quote!(#variables variables[#joint])
+            }
+            (Redundancy::Swivel, None) => quote!(swivel_angle(&LOOP, q)),
+            (Redundancy::Swivel, Some(variables)) => quote!(#variables swivel_angle(&LOOP, &variables)),
         };
         quote! {
             /// The `redundancy` of a posture, with which `inverse_kinematics` finds it again.
