@@ -58,13 +58,33 @@ pub fn convert(source: &Source, to: Convention) -> (Option<Converted>, Diagnosti
         frozen: BTreeSet::new(),
         lines: Vec::new(),
     };
-    let converted = converter.convert(to);
+    let converted = converter.convert(to).map(Converted::without_open_loops);
     if converted.is_none() {
         let message = "the common normals of the joint axes are too complex to be kept exactly";
         let help = "stay with the convention urdf, which any arm can be written in";
         diagnostics.push(Diagnostic::new(Code::TooComplex, places.name, message, "the rows of this arm", help));
     }
     (converted, diagnostics)
+}
+
+impl Converted {
+    /// Without the points of `closes` if rounded numbers of rows no longer let the loops close exactly.
+    fn without_open_loops(mut self) -> Converted {
+        let (_, diagnostics) = validate::read(&Source::new("robot.yaml", self.yaml.as_str()));
+        if !diagnostics.iter().any(|found| found.code == Code::OpenLoop) {
+            return self;
+        }
+        let mut in_list = false;
+        let stays = |line: &&str| {
+            in_list = *line == "closes:" || in_list && line.starts_with(' ');
+            !in_list
+        };
+        let rest: String = self.yaml.lines().filter(stays).map(|line| format!("{line}\n")).collect();
+        let line = "left out: `closes`, since with rounded numbers the loops do not close exactly; the convention urdf keeps it";
+        self.yaml = format!("# {line}\n{rest}");
+        self.lines.push(line.into());
+        self
+    }
 }
 
 struct Converter<'d> {

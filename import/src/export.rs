@@ -480,7 +480,8 @@ impl Writer<'_> {
             ("the payload", payload.is_some() || tips().any(|tip| tip.payload.is_some())),
             ("gravity as an argument, whose nominal value is taken", *gravity_is_argument),
             (
-                "the coupling of joints with several others, and `adds`, which a URDF cannot hold: these joints move freely",
+                "the coupling of joints with several others, and `adds`, which a URDF cannot hold: these joints move freely; \
+                 `joint_variables` of a generated module has their values",
                 coupled,
             ),
             ("`task`", task.is_some() || tips().any(|tip| tip.task.is_some())),
@@ -489,7 +490,7 @@ impl Writer<'_> {
                 "`inverse_kinematics`",
                 asked(target, given) || tips().any(|tip| asked(&tip.inverse_kinematics.target, &tip.inverse_kinematics.given)),
             ),
-            ("`closes`", !closes.is_empty()),
+            ("`closes`, for a URDF has no loops: these stay closed where a program keeps every coupling", !closes.is_empty()),
             ("`allow`", !allow.is_empty()),
             ("the names under `parameters`, whose values are written", !parameters.is_empty()),
         ] {

@@ -200,3 +200,40 @@ fn comments_that_are_left_out_are_named() {
     let attached = "link: {mass: 1, attached: [{name: \"cam #2\", mass: 1}], ";
     assert!(!said(&arm.replace("link: {mass: 1, ", attached)), "a `#` in quotes");
 }
+
+/// Couplings stay in rows of every convention. A pin stays where the frames of both links do, and else is named as left out.
+#[test]
+fn pins_of_loops_stay_or_are_named() {
+    let yaml = crate::export::LOOP;
+    let arm = valid(yaml);
+    let variables = |arm: &armgen_codegen::manipulator::Manipulator| {
+        let coupling = arm.coupling.as_ref().expect("coupled joints");
+        coupling.variables.iter().map(|of| (of.factors.clone(), of.offset.clone())).collect::<Vec<_>>()
+    };
+    for to in [Standard, Modified, Urdf] {
+        let Converted { yaml: rows, lines } = converted(yaml, to);
+        let other = valid(&rows);
+        assert_same_joints(&format!("{to:?}"), &arm, &other);
+        assert_eq!(variables(&arm), variables(&other), "{to:?}");
+        let named = lines.iter().any(|line| line.starts_with("left out: `closes`, since with rounded numbers"));
+        assert_ne!(named, rows.contains("closes:"), "{to:?}: {lines:?}\n{rows}");
+        assert_eq!(named, to != Urdf, "{to:?}: {rows}");
+    }
+    // Without a rounded number it stays; where a link frame is another, the point is named.
+    let exact = yaml
+        .replace("mount: {xyz: [-0.2, 0.1, 0]}", "mount: {xyz: [-0.2, 0, 0]}")
+        .replace("at: [0.2, -0.1, 0]", "at: [0.2, 0, 0]");
+    for (to, stays) in [(Modified, true), (Standard, true)] {
+        let Converted { yaml: rows, lines } = converted(&exact, to);
+        let arm = valid(&rows);
+        assert_eq!((rows.contains("closes:"), variables(&arm)), (stays, variables(&valid(&exact))), "{to:?}: {lines:?}\n{rows}");
+    }
+    let moved = exact.replace(
+        "joint: coupler, at: [0.2, 0, 0], with: lower, there: [0.5, 0, 0]",
+        "joint: crank, at: [0.5, 0, 0], with: coupler",
+    );
+    assert_ne!(moved, exact);
+    let Converted { yaml: rows, lines } = converted(&moved, Standard);
+    let named = lines.iter().any(|line| line == "left out: points of `closes` on links whose frames are others");
+    assert!(named && !rows.contains("closes:"), "{lines:?}\n{rows}");
+}

@@ -116,3 +116,55 @@ fn a_faulty_description_is_refused() {
     let (exported, diagnostics) = export(&Source::new("robot.yaml", "name: 3"));
     assert!(exported.is_none() && diagnostics.has_errors());
 }
+
+/// Two bars in parallel and a coupler: a loop with one pin left out, each joint with one leader.
+pub(crate) const LOOP: &str = "name: bars
+convention: urdf
+gravity: [0, -9.81, 0]
+joints:
+  - {name: lower, type: revolute, axis: [0, 0, 1], link: {mass: 8, com: [0.25, 0, 0], inertia: {xx: 0.01, yy: 0.2, zz: 0.2}}}
+  - {name: crank, type: revolute, parent: base, mount: {xyz: [-0.2, 0.1, 0]}, axis: [0, 0, 1], follows: {lower: 1}, link: {mass: 3, com: [0.1, 0, 0], inertia: {xx: 0.01, yy: 0.02, zz: 0.02}}}
+  - {name: coupler, type: revolute, parent: crank, origin: {xyz: [0.5, 0, 0]}, axis: [0, 0, 1], follows: {crank: -1}, offset: 0, link: {mass: 1.5, com: [0.1, 0, 0], inertia: {xx: 0.01, yy: 0.03, zz: 0.03}}}
+closes:
+  - {name: pin, joint: coupler, at: [0.2, -0.1, 0], with: lower, there: [0.5, 0, 0]}
+";
+
+/// A URDF has no loops: the pins are named as left out, the couplings stay, and with the pins written again the loop is proved closed.
+#[test]
+fn loops_are_named_and_their_couplings_are_kept() {
+    let Exported { urdf, lines } = exported(LOOP);
+    let said = lines.join("\n");
+    assert!(said.contains("left out: `closes`, for a URDF has no loops: these stay closed where"), "{said}");
+    assert!(!said.contains("move freely"), "{said}");
+    for mimic in ["<mimic joint=\"lower\"", "<mimic joint=\"crank\" multiplier=\"-1\""] {
+        assert!(urdf.contains(mimic), "{mimic}:\n{urdf}");
+    }
+    let source = Source::new("robot.urdf", urdf);
+    let all = Options { all: true, ..Options::default() };
+    let (back, diagnostics) = import(&source, &all);
+    let yaml = back.unwrap_or_else(|| panic!("{}", diagnostics.render(&source, Colour::Never))).yaml;
+    let (first, second) = (valid(LOOP), valid(&yaml));
+    let variables = |arm: &armgen_codegen::manipulator::Manipulator| {
+        let coupling = arm.coupling.as_ref().expect("coupled joints");
+        let own = |variable: &armgen_codegen::manipulator::JointVariable| (variable.factors.clone(), variable.offset.clone());
+        let mut all: Vec<_> = arm.joints.iter().map(|joint| joint.name.clone()).zip(coupling.variables.iter().map(own)).collect();
+        all.sort_by(|x, y| x.0.cmp(&y.0));
+        all
+    };
+    assert_eq!(variables(&first), variables(&second), "{yaml}");
+    let pins = LOOP.split_once("closes:").expect("pins").1;
+    valid(&format!("{yaml}closes:{pins}"));
+    let wrong = format!("{yaml}closes:{pins}").replacen("[0.5, 0, 0]}", "[0.51, 0, 0]}", 1);
+    let (_, diagnostics) = armgen_codegen::validate::read(&Source::new("robot.yaml", wrong));
+    assert!(diagnostics.has_errors());
+    // A joint that follows several others has no `mimic`, and that is said, with where its variable is to be had.
+    let several = "    follows: {lower: 1, crank: -1}";
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../tests/data/trees/parallelogram.yaml");
+    let text = std::fs::read_to_string(path).expect("a readable file");
+    assert!(text.contains(several));
+    let pin = "closes:\n  - {joint: rod, at: [0.5, 0, 0], with: forearm, there: [-0.2, 0, 0]}\n";
+    let Exported { urdf, lines } = exported(&format!("{text}{pin}"));
+    let said = lines.join("\n");
+    assert!(!urdf.contains("<mimic"), "{urdf}");
+    assert!(said.contains("these joints move freely; `joint_variables`") && said.contains("left out: `closes`"), "{said}");
+}

@@ -132,6 +132,14 @@ fn computed_angles_are_proved_in_single_precision() {
     assert!(text.contains("(25/2*q1 - 157/200*q2 + 1/10)"), "{text}");
 }
 
+/// Tests for users have reference values of robots that have more joints than coordinates, too.
+#[test]
+fn tests_of_coupled_arms_are_written() {
+    let (source, generated) = generated(FINGER);
+    let tests = armgen_verify::test_kit(&source, &generated.module, "mod robot;").expect("tests");
+    assert!(tests.contains("inertia_matrix("), "{tests}");
+}
+
 /// A factor of the other sign, or a follower left out, is another robot: every function that it moves is refused.
 #[test]
 fn a_module_of_another_coupling_is_refused() {

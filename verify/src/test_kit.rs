@@ -8,7 +8,7 @@ mod languages;
 
 use std::fmt::Write;
 
-use armgen_description::manipulator::{Joint, Manipulator};
+use armgen_description::manipulator::{Coordinate, Manipulator};
 use armgen_description::{language::Language, origin::Origin};
 
 use crate::arithmetic::wide::{wide_circle, Wide, WideArguments};
@@ -77,11 +77,11 @@ fn wide_state(arguments: &Arguments<f64>, manipulator: &Manipulator) -> Option<S
     angles.extend(values.iter().map(wide_circle).collect::<Option<Vec<_>>>()?);
     let computed = of_arm.factors(&fine)?;
     let signs = joints.map(|i| Inputs::<Wide>::sign(&inputs, i)).collect();
-    let fading = |(i, joint): (usize, &Joint)| match joint.decay_velocity() {
+    let fading = |(i, of): (usize, Coordinate<'_>)| match of.joint.decay_velocity() {
         Some(velocity) => Some(inputs.stribeck(i, &Wide::from_formula(&formula(&velocity))?)),
         None => Some(Wide::from_f64(0.0)),
     };
-    let stribeck = manipulator.joints.iter().enumerate().map(fading).collect::<Option<_>>()?;
+    let stribeck = manipulator.coordinates().into_iter().enumerate().map(fading).collect::<Option<_>>()?;
     Some(State { stribeck, computed, ..State::of(arguments.map(Wide::from_f64), angles, signs, [0.0, 1.0].map(Wide::from_f64)) })
 }
 
