@@ -81,7 +81,7 @@ fn classes_of_coupled_arms() {
     let turns = "whole turn";
     for (arm, old, new, why) in [
         ("coupled_6r", "adds: {j2: -1}", "adds: {j2: 1/2}", turns),
-        ("coupled_6r", "adds: {j4: -1}", "follows: {j4: -1}", "on 6 joints that move with 5 coordinates"),
+        ("coupled_6r", "adds: {j4: -1}", "follows: {j4: -1}", "coupled joints: use its Jacobian, with damping"),
         // Half a turn of the crank, or two, for a whole one of the forearm.
         ("coupled_bars", "follows: {crank: 1, lower: -1}", "follows: {crank: 2, lower: -1}", turns),
         ("coupled_bars", "follows: {crank: 1, lower: -1}", "follows: {lower: -1}", "some joints do not move the end effector"),

@@ -132,6 +132,18 @@ fn computed_angles_are_proved_in_single_precision() {
     assert!(text.contains("(25/2*q1 - 157/200*q2 + 1/10)"), "{text}");
 }
 
+/// Closed forms in the rates of links exist where terms of fingers that mirror each other cancel: a count of operations without friction.
+#[test]
+fn fingers_cost_what_their_closed_form_costs() {
+    let lines = GRIPPER.lines().filter(|line| !line.starts_with("    friction:"));
+    let text = lines.map(|line| format!("{line}\n")).collect::<String>();
+    let (arm, _) = validate::read(&Source::new("robot.yaml", text)).0.expect("valid");
+    let functions = Selection::named(["inverse_dynamics"]).expect("a function");
+    let module = armgen_codegen::schedule::module(&Model::new(arm), &Options { functions, ..Options::default() });
+    let cost = armgen_codegen::program::Cost::of(&module.functions[0]);
+    assert!(cost.mul <= 27 && cost.add <= 20, "{cost:?}");
+}
+
 /// Tests for users have reference values of robots that have more joints than coordinates, too.
 #[test]
 fn tests_of_coupled_arms_are_written() {

@@ -61,7 +61,7 @@ impl Derivation {
             .iter()
             .map(|&arrangement| derivation(&forms, arrangement, &mut |pool, symbol| pool.symbol(symbol)))
             .collect();
-        if let Some(forms) = self.forms_in_absolute_rates() {
+        if let Some(forms) = self.forms_in_absolute_rates(&forms) {
             all.extend(
                 Arrangement::ALL
                     .iter()
@@ -73,21 +73,30 @@ impl Derivation {
 
     /// The closed forms in absolute rates: w_i is the rate of link i about the axis that it shares with links before it, and
     /// dq_i = ±(w_i - w_p). Accelerations likewise. Squares of sums of rates then stay squares.
-    fn forms_in_absolute_rates(&self) -> Option<Vec<NormalForm>> {
+    fn forms_in_absolute_rates(&self, forms: &[NormalForm]) -> Option<Vec<NormalForm>> {
         if self.parallel.iter().all(Option::is_none) {
             return None;
         }
-        let mut pool = Pool::new(self.pool.field().clone());
+        let rewritten = |of: &Pool, exprs: &[ExprId]| {
+            let mut pool = Pool::new(of.field().clone());
+            let entries = of.rewritten(exprs, &mut pool, &mut |pool, symbol| {
+                let own = pool.symbol(symbol);
+                let Some((rate, (before, opposite))) = moving(symbol).zip(self.before(symbol)) else {
+                    return own;
+                };
+                let before = pool.symbol(rate(before));
+                pool.sub(own, before).signed(opposite)
+            });
+            (entries != exprs || pool.len() != of.len()).then(|| pool.all_normal_forms(&entries, CLOSED_FORM_TERMS))?
+        };
         let (all, _) = self.pool.with_gravity(&self.entries);
-        let entries = self.pool.rewritten(&all, &mut pool, &mut |pool, symbol| {
-            let own = pool.symbol(symbol);
-            let Some((rate, (before, opposite))) = moving(symbol).zip(self.before(symbol)) else {
-                return own;
-            };
-            let before = pool.symbol(rate(before));
-            pool.sub(own, before).signed(opposite)
-        });
-        (entries != all || pool.len() != self.pool.len()).then(|| pool.all_normal_forms(&entries, CLOSED_FORM_TERMS))?
+        // What cancels in a closed form is gone there; a recursion over coupled joints has long sums of it.
+        rewritten(&self.pool, &all).or_else(|| {
+            let mut pool = Pool::new(self.pool.field().clone());
+            let mut written = |form| pool.from_normal_form_in(form, Arrangement::ALL[0], &mut |pool, symbol| pool.symbol(symbol));
+            let entries: Vec<ExprId> = forms.iter().map(&mut written).collect();
+            rewritten(&pool, &entries)
+        })
     }
 
     /// The joint before the symbol's own whose axis is parallel, and whether it points the other way.

@@ -43,10 +43,7 @@ impl Coordinates {
             return Err("some joints do not move the end effector".into());
         }
         if path.len() != dof {
-            return Err(format!(
-                "it is not solved for an arm whose end effector is on {} joints that move with {dof} coordinates: use its Jacobian, with damping",
-                path.len()
-            ));
+            return Err(UNSOLVED.into());
         }
         if let Some(GivenBeside::Joint(joint)) = manipulator.inverse_kinematics.given {
             if !path.contains(&joint.index()) {
