@@ -267,8 +267,8 @@ impl Element for Surd {
     fn sign(&self) -> Self {
         let Coordinates { numerators, denominator } = &self.coordinates;
         let Some(first) = numerators.iter().find(|x| !x.is_zero()) else { return self.clone() };
-        let is_negative = |n: &IBig| n.is_negative() != first.is_negative();
-        let words = numerators.iter().flat_map(|n| [u64::from(is_negative(n))].into_iter().chain(words_of(&n.unsigned_abs())));
+        let of = if first.is_negative() { negate(numerators) } else { numerators.clone() };
+        let words = of.iter().flat_map(|n| [u64::from(n.is_negative())].into_iter().chain(words_of(&n.unsigned_abs())));
         let words = words.chain(words_of(denominator));
         let size = 1 + (words.fold(0, |hash, word| scrambled(hash ^ word)) % 10_000) as i64;
         let size = Rational::from(if first.is_negative() { -size } else { size });
@@ -438,6 +438,9 @@ mod tests {
         assert_eq!(odd.plus(&other).times(&odd.minus(&other)), odd.times(&odd).minus(&other.times(&other)));
         assert_eq!(odd.times(&other).over(&other), Some(odd.clone()));
         assert_eq!(odd.minus(&other).plus(&other).minus(&odd), of("0"));
+        for number in [&odd, &other, &of("sqrt(6)")] {
+            assert_eq!(number.negated().sign(), number.sign().negated());
+        }
         assert_ne!(of("sqrt(2)"), of("sqrt(3)"));
         assert_eq!(of("(1/(1 + sqrt(2)))"), of("sqrt(2) - 1"));
     }
