@@ -443,7 +443,7 @@ fn an_arm_ends_before_the_fingers_of_its_hand() {
     let inertial = "<inertial><mass value='1'/><inertia ixx='1' iyy='1' izz='1' ixy='0' ixz='0' iyz='0'/></inertial>";
     let link = |name: &str| format!("<link name='{name}'>{inertial}</link>");
     let joint = |name: &str, kind: &str, parent: &str, child: &str, more: &str| {
-        let axis = if name.len() % 2 == 0 { "0 1 0" } else { "1 0 0" };
+        let axis = if name.len().is_multiple_of(2) { "0 1 0" } else { "1 0 0" };
         let ends = format!("<parent link='{parent}'/><child link='{child}'/>");
         format!("<joint name='{name}' type='{kind}'>{ends}<axis xyz='{axis}'/><origin xyz='0 0 1'/>{more}</joint>")
     };
