@@ -197,7 +197,7 @@ impl<'a> Estimate<'a> {
                 !takes_time || candidate == Some(term) || self.active.contains(&column) || is_fixed()
             };
             let column = |j: usize, term: Friction| {
-                is_wanted(j, term).then(|| piece.friction(j, term, self.velocities[j], &self.sizes[place]))
+                is_wanted(j, term).then(|| piece.friction(j, term, self.velocities[j], &self.sizes[place], self.delays[j]))
             };
             let friction: Vec<Option<Vec<f64>>> = (0..n).flat_map(|j| Friction::ALL.map(|term| column(j, term))).collect();
             let loads = run.load.is_there.then(|| self.place(Column::Load(piece.log, 0)));
@@ -230,7 +230,7 @@ impl<'a> Estimate<'a> {
                 }
             }
         }
-        self.fill_delays(&mut equations, &known);
+        self.fill_delays(&mut equations, &known, true);
         (equations, known)
     }
 
@@ -264,7 +264,8 @@ impl<'a> Estimate<'a> {
         gram
     }
 
-    fn take(&mut self, x: &DVector<f64>) {
+    /// Takes values of the active columns; the others are 0, or fixed.
+    pub(crate) fn take(&mut self, x: &DVector<f64>) {
         self.x.fill(0.0);
         for (&place, value) in self.active.iter().zip(x.iter()) {
             self.x[place] = *value;
@@ -392,7 +393,7 @@ impl<'a> Estimate<'a> {
         let cost = |log: f64| {
             let mut column = Vec::new();
             for (piece, sizes) in self.pieces.iter().zip(&self.sizes) {
-                column.extend(piece.friction(joint, Friction::Stribeck, log.exp(), sizes));
+                column.extend(piece.friction(joint, Friction::Stribeck, log.exp(), sizes, self.delays[joint]));
             }
             let mut small = Equations { columns: 5 * sessions, ..Equations::default() };
             let mut weights = Vec::new();
@@ -494,7 +495,9 @@ impl<'a> Estimate<'a> {
             let slope = self.place(Column::Gain(joint));
             let column = |velocity: f64| -> Vec<f64> {
                 let pieces = self.pieces.iter().zip(&self.sizes);
-                pieces.flat_map(|(piece, sizes)| piece.friction(joint, Friction::Stribeck, velocity, sizes)).collect()
+                pieces
+                    .flat_map(|(piece, sizes)| piece.friction(joint, Friction::Stribeck, velocity, sizes, self.delays[joint]))
+                    .collect()
             };
             let velocity = self.velocities[joint];
             let difference = column(velocity * (1.0 + step)).into_iter().zip(column(velocity)).map(|(a, b)| (a - b) / step);

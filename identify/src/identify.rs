@@ -245,9 +245,23 @@ pub fn identify(arm: &Arm, inputs: &[Input], options: &Options, findings: &mut F
     estimate.along_reference = along_reference.as_deref();
     let mut of_delays = vec![None; n];
     if options.delay.is_none() {
-        of_delays = estimate.settle();
+        of_delays = estimate.settle(true);
         if estimate.leave_undetermined_delays(&of_delays) {
-            of_delays = estimate.settle();
+            of_delays = estimate.settle(false);
+        }
+        // Delays that were nearly right may have hidden terms.
+        let before = chosen.clone();
+        if options.friction.is_none() && !options.instruments {
+            estimate.choose(&mut chosen, Friction::Cubic);
+            estimate.choose(&mut chosen, Friction::Load);
+        }
+        if chosen != before {
+            activate(&mut estimate, &chosen);
+            estimate.renew_sizes();
+            activate(&mut estimate, &chosen);
+            estimate.prune(&mut chosen, &[Friction::Load, Friction::Cubic, Friction::Stribeck]);
+            activate(&mut estimate, &chosen);
+            of_delays = estimate.settle(false);
         }
         for (j, delay) in estimate.delays.iter().enumerate().filter(|(_, delay)| Estimate::is_last_delay(**delay)) {
             let text = format!("the delay of joint `{}`, {:.1} ms, is at the end of its range", arm.joints[j].name, 1e3 * delay);
@@ -255,6 +269,9 @@ pub fn identify(arm: &Arm, inputs: &[Input], options: &Options, findings: &mut F
             let column = inputs[0].log.effort_column(&arm.joints[j].name);
             findings.push(Finding::new(Code::DelayAtLimit, &inputs[0].log.name, text, help).in_column(column));
         }
+    }
+    if !findings.iter().any(|of| matches!(of.code, Code::SignSuspected | Code::JointOrder)) {
+        suspect::again(&estimate, &inputs[0].log, &gains, findings);
     }
     let identify_gains = has_currents && options.gains == Gains::Identify;
     let mut gain_intervals: Vec<Interval> = Vec::new();
@@ -590,7 +607,8 @@ fn cutoff_of(estimate: &Estimate<'_>, highest: f64) -> f64 {
                 .skip(j)
                 .step_by(n)
                 .map(|(k, tau)| {
-                    let of = |&(term, value): &(Friction, f64)| value * term.column(piece.dq[k], piece.signs[k], 0.0, 1.0);
+                    let of =
+                        |&(term, value): &(Friction, f64)| value * term.column(piece.dq[k], piece.sign(j, piece.dq[k]), 0.0, 1.0);
                     tau + friction.iter().map(of).sum::<f64>()
                 })
                 .collect();

@@ -100,26 +100,25 @@ pub fn judge(arm: &Arm, log: &Log, model: &Model) -> Judgement {
     };
     let mut gravity = vec![Vec::new(); n];
     let mut uncertain = vec![Vec::new(); n];
-    let predicted: Vec<Vec<Vec<f64>>> = pieces
-        .iter()
-        .map(|piece| {
-            let sizes = arm.gravity(&piece.q, &model.pi);
-            for row in 0..piece.kept.len() {
-                for j in 0..n {
-                    gravity[j].push(sizes[piece.kept[row] * n + j].abs());
-                }
-            }
-            let mut torques = piece.torques(arm, &model.pi);
-            for (j, all) in torques.iter_mut().enumerate() {
-                add_friction(all, piece, model, j, &sizes);
-            }
-            torques
-        })
-        .collect();
-    judgement.delays = match &model.delays {
-        Some(delays) => delays.clone(),
-        None => (0..n).map(|j| best_delay(&pieces, &predicted, j)).collect(),
+    let sizes: Vec<Vec<f64>> = pieces.iter().map(|piece| arm.gravity(&piece.q, &model.pi)).collect();
+    for (piece, sizes) in pieces.iter().zip(&sizes) {
+        for k in &piece.kept {
+            (0..n).for_each(|j| gravity[j].push(sizes[k * n + j].abs()));
+        }
+    }
+    let of_bodies: Vec<Vec<Vec<f64>>> = pieces.iter().map(|piece| piece.torques(arm, &model.pi)).collect();
+    let predicted = |delays: &[f64]| {
+        let mut torques = of_bodies.clone();
+        for ((all, piece), sizes) in torques.iter_mut().zip(&pieces).zip(&sizes) {
+            all.iter_mut().enumerate().for_each(|(j, all)| add_friction(all, piece, model, j, sizes, delays[j]));
+        }
+        torques
     };
+    judgement.delays = model.delays.clone().unwrap_or_else(|| {
+        let predicted = predicted(&vec![0.0; n]);
+        (0..n).map(|j| best_delay(&pieces, &predicted, j)).collect()
+    });
+    let predicted = predicted(&judgement.delays);
     for (piece, predicted) in pieces.iter().zip(&predicted) {
         let base = arm.base.len();
         judgement.times.extend((0..piece.kept.len()).map(|row| piece.time(row)));
@@ -196,9 +195,9 @@ fn contacts(times: &[f64], joints: usize, beyond: &dyn Fn(usize, usize) -> bool)
     joined
 }
 
-fn add_friction(all: &mut [f64], piece: &Piece, model: &Model, j: usize, sizes: &[f64]) {
+fn add_friction(all: &mut [f64], piece: &Piece, model: &Model, j: usize, sizes: &[f64], delay: f64) {
     for (term, value) in Friction::ALL.into_iter().zip(model.friction[j]).filter(|(_, value)| *value != 0.0) {
-        for (sum, column) in all.iter_mut().zip(piece.friction(j, term, model.velocities[j], sizes)) {
+        for (sum, column) in all.iter_mut().zip(piece.friction(j, term, model.velocities[j], sizes, delay)) {
             *sum += value * column;
         }
     }

@@ -7,7 +7,7 @@ use std::ops::Range;
 
 use crate::arm::Arm;
 use crate::log::Log;
-use crate::signal::{derivative, interpolate, period, pieces, spread, LowPass};
+use crate::signal::{interpolate, noise, period, pieces, shifted, slopes, LowPass, NOISE_OF_SLOPES};
 
 /// Terms of friction, in the order of the columns.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
@@ -41,6 +41,11 @@ impl Friction {
             Friction::Cubic => "cubic",
             Friction::Stribeck => "stribeck",
         }
+    }
+
+    /// Whether it jumps where the rate changes its sign.
+    pub fn is_dry(self) -> bool {
+        matches!(self, Friction::Coulomb | Friction::Load | Friction::Stribeck)
     }
 
     /// Whether its coefficient is at least 0.
@@ -86,18 +91,20 @@ pub struct Piece {
     pub known: Vec<f64>,
     /// Whether a row counts, by kept sample and joint.
     pub counts: Vec<bool>,
-    /// Smoothing of the sign, by joint.
+    /// Rates below this may be noise, by joint.
     pub eps: Vec<f64>,
-    /// Smooth signs of the rates, state by state.
-    pub signs: Vec<f64>,
+    /// Standard deviations of the noise of rates, by joint.
+    noises: Vec<f64>,
     /// The low pass.
     pub filter: LowPass,
-    /// Filtered columns of friction that depend on rates alone, by joint.
-    of_rates: Vec<[Vec<f64>; 3]>,
+    /// Filtered columns of friction that depend on rates alone, by joint, in the order of [`OF_RATES`].
+    of_rates: Vec<Vec<Vec<f64>>>,
+    /// Whether it has some of the samples of another piece, too few to be filtered.
+    is_part: bool,
 }
 
-/// These terms.
-const OF_RATES: [Friction; 3] = [Friction::Viscous, Friction::Coulomb, Friction::Cubic];
+/// Terms that depend on rates alone; Stribeck friction has a velocity, too, and is there only in a part of a piece.
+const OF_RATES: [Friction; 4] = [Friction::Viscous, Friction::Coulomb, Friction::Cubic, Friction::Stribeck];
 
 /// Columns that are filtered side by side.
 const TOGETHER: usize = 4;
@@ -105,8 +112,20 @@ const TOGETHER: usize = 4;
 /// Samples of a stretch that are filtered at once.
 const LONGEST: usize = 16_384;
 
-/// Least smoothing of a sign, rad/s or m/s.
+/// Rates below this may be noise in any log, rad/s or m/s.
 const LEAST_EPS: f64 = 0.003;
+
+/// The width of a smooth sign over the standard deviation of the noise of its rate.
+const WIDTH: f64 = 3.0;
+
+/// A rate passes 0 swiftly where it is hidden by its noise for less than this part of the period of the cutoff.
+const SWIFT: f64 = 0.3;
+
+/// Where the sign of a rate is not known, rows do not count for this part of the period of the cutoff before and behind, either.
+const AROUND: f64 = 0.5;
+
+/// Rates below this part of the highest may be what a filter leaves of rest; where noise hides rates above the other part, too much would be left out.
+const HIDDEN: [f64; 2] = [1e-4, 0.02];
 
 /// How long a rate keeps its sign where friction at low rates counts, s.
 const STEADY: f64 = 0.1;
@@ -165,21 +184,23 @@ fn piece(
     let wide = LowPass::new(wide_cutoff, rate);
     let filter = LowPass::new(cutoff, rate);
     let (mut q, mut dq, mut ddq) = (vec![0.0; n * samples], vec![0.0; n * samples], vec![0.0; n * samples]);
-    let (mut eps, mut noises) = (Vec::new(), Vec::new());
+    let (mut eps, mut noises, mut unsure) = (Vec::new(), Vec::new(), Vec::new());
     let mut steady = vec![false; n * samples];
     for i in 0..n {
         let position = on_grid(&log.q[i]);
-        let rough = match &log.dq {
-            Some(rates) => on_grid(&rates[i]),
-            None => derivative(&position, period),
+        let (rough, noise) = match &log.dq {
+            Some(rates) => {
+                let rates = on_grid(&rates[i]);
+                let noise = noise(&rates);
+                (rates, noise)
+            }
+            None => (slopes(&position, period), NOISE_OF_SLOPES / period * noise(&position)),
         };
-        // Second differences of white noise have six times its variance.
-        let second: Vec<f64> = rough.windows(3).map(|x| x[0] - 2.0 * x[1] + x[2]).collect();
-        let noise = spread(&second) / 6f64.sqrt() * (2.0 * wide_cutoff / rate).sqrt().min(1.0);
-        eps.push((3.0 * noise).max(LEAST_EPS));
+        let noise = noise * (2.0 * wide_cutoff / rate).sqrt().min(1.0);
+        eps.push((WIDTH * noise).max(LEAST_EPS));
         noises.push(noise);
         let (smooth, rates) = (wide.both_ways(&position), wide.both_ways(&rough));
-        let accelerations = derivative(&rates, period);
+        let accelerations = slopes(&rates, period);
         let mut start = 0;
         for k in 0..samples {
             (q[k * n + i], dq[k * n + i], ddq[k * n + i]) = (smooth[k], rates[k], accelerations[k]);
@@ -190,16 +211,19 @@ fn piece(
                 start = k + 1;
             }
         }
+        unsure.push(unsure_signs(&rates, noise, (SWIFT / cutoff * rate) as usize));
     }
     let tau: Vec<Vec<f64>> = log.effort.iter().map(|tau| filter.both_ways(&on_grid(tau))).collect();
     let step = ((rate / (5.0 * cutoff)).round() as usize).max(1);
     let kept: Vec<usize> = (margin..samples.saturating_sub(margin)).step_by(step).collect();
+    let around = (AROUND / cutoff * rate) as usize;
     let counts = kept
         .iter()
         .flat_map(|&k| (0..n).map(move |i| (k, i)))
         .map(|(k, i)| {
             let moves = dq[k * n + i].abs() > 3.0 * eps[i] || (steady[k * n + i] && dq[k * n + i].abs() > 1e-9);
-            moves && !flawed.get(i).is_some_and(|flawed| flawed.iter().any(|stretch| stretch.contains(&grid[k])))
+            let is_sure = unsure[i].iter().all(|stretch| k + around < stretch.start || stretch.end + around <= k);
+            moves && is_sure && !flawed.get(i).is_some_and(|flawed| flawed.iter().any(|stretch| stretch.contains(&grid[k])))
         })
         .collect();
     let keep = |full: &[f64], columns: usize| {
@@ -223,40 +247,87 @@ fn piece(
     };
     let y = if with_columns { keep(&arm.regressor(&q, &dq, &ddq), n * arm.base.len()) } else { Vec::new() };
     let known = keep(&arm.known(&q, &dq, &ddq), n);
-    let signs = dq.iter().enumerate().map(|(k, dq)| smooth_sign(*dq, eps[k % n], noises[k % n])).collect();
     let start = grid[0];
-    let mut piece =
-        Piece { log: place, period, start, q, dq, ddq, tau, kept, y, known, counts, eps, signs, filter, of_rates: Vec::new() };
-    piece.of_rates = (0..n).map(|i| OF_RATES.map(|term| piece.column(i, term, 1.0, &[]))).collect();
+    let mut piece = Piece {
+        log: place,
+        period,
+        start,
+        q,
+        dq,
+        ddq,
+        tau,
+        kept,
+        y,
+        known,
+        counts,
+        eps,
+        noises,
+        filter,
+        of_rates: Vec::new(),
+        is_part: false,
+    };
+    piece.of_rates = (0..n).map(|i| OF_RATES[..3].iter().map(|term| piece.column(i, *term, 1.0, &[], 0.0)).collect()).collect();
     piece
 }
 
-/// The sign of a rate with noise, smooth within eps.
+/// Stretches of samples at which the sign of a rate is not known: those below its noise, but for those at which it passes 0 within so many
+/// samples. Without noise only a rate of 0 has no sign.
+fn unsure_signs(rates: &[f64], noise: f64, swift: usize) -> Vec<Range<usize>> {
+    let fastest = rates.iter().fold(0.0f64, |fastest, rate| fastest.max(rate.abs()));
+    let [rest, most] = HIDDEN.map(|part| part * fastest);
+    let below = rest.max(WIDTH * noise);
+    if below > most {
+        return Vec::new();
+    }
+    let mut stretches: Vec<Range<usize>> = Vec::new();
+    for k in (0..rates.len()).filter(|&k| rates[k].abs() < below) {
+        match stretches.last_mut().filter(|last| last.end == k) {
+            Some(last) => last.end = k + 1,
+            None => stretches.push(k..k + 1),
+        }
+    }
+    let passes = |of: &Range<usize>| {
+        let turns = of.start > 0 && of.end < rates.len() && rates[of.start - 1] * rates[of.end] < 0.0;
+        let has_zero = below == rest && rates[of.clone()].iter().any(|rate| rate.abs() < 0.05 * rest);
+        turns && of.len() <= swift.max(1) && !has_zero
+    };
+    stretches.retain(|of| !passes(of));
+    stretches
+}
+
+/// The sign of a rate with noise, smooth within eps = 3 noise.
 ///
 /// tanh u + k u sech² u with u = dq/eps. The first term alone lacks eps ln 2 of the integral of a sign on either side of 0, which seems to be
 /// less Coulomb friction, and more Stribeck friction. With k the mean over the noise has the whole integral, and a reversal is short before
 /// the low pass. For noise n, E[eps ln cosh(n/eps)] and the like are n²/(2 eps).
-fn smooth_sign(dq: f64, eps: f64, noise: f64) -> f64 {
-    let (u, part) = (dq / eps, 0.5 * (noise / eps).powi(2));
+fn smooth_sign(dq: f64, noise: f64) -> f64 {
+    let (u, part) = (dq / (WIDTH * noise).max(f64::MIN_POSITIVE), 0.5 / (WIDTH * WIDTH));
     let k = (std::f64::consts::LN_2 + part) / (std::f64::consts::LN_2 - part);
-    let t = u.tanh();
+    let t = u.clamp(-40.0, 40.0).tanh();
     t + k * u * (1.0 - t * t)
 }
 
 impl Piece {
     /// A part of the kept samples, as it would be with the states under other joints and signs: joint j has the states of `order[j]` times
-    /// `signs[j]`, and the torque of `torques[j]` times a scale. Y is not filtered.
-    pub fn exchanged(&self, arm: &Arm, order: &[usize], signs: &[f64], torques: &[(usize, f64)], step: usize) -> Piece {
+    /// `signs[j]`, and the torque of `torques[j]` times a scale. Y is not filtered. `delays` are taken out, and Stribeck friction has `velocities`.
+    pub fn exchanged(
+        &self,
+        arm: &Arm,
+        [order, torques]: [&[(usize, f64)]; 2],
+        [delays, velocities]: [&[f64]; 2],
+        step: usize,
+    ) -> Piece {
         let n = order.len();
         let rows: Vec<usize> = (0..self.kept.len()).step_by(step).collect();
-        let by_joint = |x: &[f64], at: usize| order.iter().zip(signs).map(|(&j, sign)| sign * x[at * n + j]).collect::<Vec<_>>();
+        let by_joint = |x: &[f64], at: usize| order.iter().map(|&(j, sign)| sign * x[at * n + j]).collect::<Vec<_>>();
         let of_states = |x: &[f64]| rows.iter().flat_map(|&row| by_joint(x, self.kept[row])).collect::<Vec<f64>>();
         let (q, dq, ddq) = (of_states(&self.q), of_states(&self.dq), of_states(&self.ddq));
-        let torque = |&(j, scale): &(usize, f64)| rows.iter().map(|&row| scale * self.tau[j][self.kept[row]]).collect();
+        let some = |column: Vec<f64>, factor: f64| rows.iter().map(|&row| factor * column[row]).collect::<Vec<f64>>();
+        let torque = |&(j, scale): &(usize, f64)| some(self.delayed(j, delays[j]), scale);
         // All of these are odd functions of the rate.
-        let of_rates = |(&j, sign): (&usize, &f64)| {
-            let thin = |column: Vec<f64>| rows.iter().map(|&row| sign * column[row]).collect();
-            OF_RATES.map(|term| thin(self.friction(j, term, 1.0, &[])))
+        let of_rates = |&(j, sign): &(usize, f64)| {
+            let columns = OF_RATES.map(|term| some(self.friction(j, term, velocities[j], &[], delays[j]), sign));
+            columns.to_vec()
         };
         let spacing = if rows.len() > 1 { self.kept[rows[1]] - self.kept[rows[0]] } else { step };
         Piece {
@@ -267,11 +338,12 @@ impl Piece {
             kept: (0..rows.len()).collect(),
             y: arm.regressor(&q, &dq, &ddq),
             known: arm.known(&q, &dq, &ddq),
-            counts: rows.iter().flat_map(|&row| order.iter().map(move |&j| self.counts[row * n + j])).collect(),
-            eps: order.iter().map(|&j| self.eps[j]).collect(),
-            signs: of_states(&self.signs),
+            counts: rows.iter().flat_map(|&row| order.iter().map(move |&(j, _)| self.counts[row * n + j])).collect(),
+            eps: order.iter().map(|&(j, _)| self.eps[j]).collect(),
+            noises: order.iter().map(|&(j, _)| self.noises[j]).collect(),
             filter: self.filter.clone(),
-            of_rates: order.iter().zip(signs).map(of_rates).collect(),
+            of_rates: order.iter().map(of_rates).collect(),
+            is_part: true,
             q,
             dq,
             ddq,
@@ -285,19 +357,29 @@ impl Piece {
 
     /// Filtered torque of a joint at the kept samples, of a time later by a delay.
     pub fn delayed(&self, joint: usize, delay: f64) -> Vec<f64> {
-        let shift = delay / self.period;
-        if shift == 0.0 {
-            return self.kept.iter().map(|&k| self.tau[joint][k]).collect();
-        }
-        self.kept.iter().map(|&k| crate::signal::between(&self.tau[joint], k as f64 + shift)).collect()
+        shifted(&self.tau[joint], self.kept.iter().copied(), delay / self.period)
     }
 
-    /// A filtered column of a joint at the kept samples. `sizes` has |g| state by state, and is used by load friction.
-    pub fn friction(&self, joint: usize, term: Friction, velocity: f64, sizes: &[f64]) -> Vec<f64> {
-        match OF_RATES.iter().position(|known| *known == term) {
-            Some(place) => self.of_rates[joint][place].clone(),
-            None if term == Friction::Offset => vec![1.0; self.kept.len()],
-            None => self.column(joint, term, velocity, sizes),
+    /// The sign of a rate of a joint, smooth within its noise.
+    pub fn sign(&self, joint: usize, dq: f64) -> f64 {
+        smooth_sign(dq, self.noises[joint])
+    }
+
+    /// A filtered column of a joint at the kept samples. `sizes` has g state by state, and is used by load friction.
+    ///
+    /// With a delay, the column that belongs to [`delayed`](Self::delayed) torques: a sampled torque has the sign of the rate that was there a
+    /// delay before the sample. Between samples that is no shift of a sampled sign.
+    pub fn friction(&self, joint: usize, term: Friction, velocity: f64, sizes: &[f64], delay: f64) -> Vec<f64> {
+        let known = OF_RATES.iter().position(|known| *known == term).and_then(|place| self.of_rates[joint].get(place));
+        match known {
+            Some(column) if !term.is_dry() || delay == 0.0 => column.clone(),
+            _ if term == Friction::Offset => vec![1.0; self.kept.len()],
+            // g changes little while the filter responds.
+            _ if self.is_part => {
+                let signs = self.of_rates[joint][1].iter().enumerate();
+                signs.map(|(row, sign)| sign * sizes.get(row * self.tau.len() + joint).map_or(0.0, |g| g.abs())).collect()
+            }
+            _ => self.column(joint, term, velocity, sizes, delay),
         }
     }
 
@@ -313,15 +395,22 @@ impl Piece {
         (0..n).map(filtered).collect()
     }
 
-    fn column(&self, joint: usize, term: Friction, velocity: f64, sizes: &[f64]) -> Vec<f64> {
-        let n = self.tau.len();
-        let full: Vec<f64> = (0..self.tau[joint].len())
-            .map(|k| {
-                let size = sizes.get(k * n + joint).map_or(0.0, |g| g.abs());
-                term.column(self.dq[k * n + joint], self.signs[k * n + joint], size, velocity)
-            })
-            .collect();
-        let filtered = self.filter.both_ways(&full);
-        self.kept.iter().map(|&k| filtered[k]).collect()
+    fn column(&self, joint: usize, term: Friction, velocity: f64, sizes: &[f64], delay: f64) -> Vec<f64> {
+        let (n, by) = (self.tau.len(), delay / self.period);
+        let before = |states: &[f64]| -> Vec<f64> {
+            let own: Vec<f64> = states.iter().skip(joint).step_by(n).copied().collect();
+            if by == 0.0 {
+                own
+            } else {
+                shifted(&own, 0..own.len(), -by)
+            }
+        };
+        let (rates, sizes) = (before(&self.dq), before(sizes));
+        let value = |(k, dq): (usize, &f64)| {
+            let size = sizes.get(k).map_or(0.0, |g| g.abs());
+            term.column(*dq, self.sign(joint, *dq), size, velocity)
+        };
+        let filtered = self.filter.both_ways(&rates.iter().enumerate().map(value).collect::<Vec<_>>());
+        shifted(&filtered, self.kept.iter().copied(), by)
     }
 }

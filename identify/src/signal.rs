@@ -91,19 +91,46 @@ pub fn nearest(t: &[f64], x: &[f64], other: &[f64]) -> Vec<f64> {
     later(lag)
 }
 
-/// A value of an even grid between its samples, by the cubic through four of them; `at` counts samples.
-pub fn between(x: &[f64], at: f64) -> f64 {
-    let last = x.len() - 1;
-    if last < 3 {
-        return x[(at.round().max(0.0) as usize).min(last)];
-    }
-    let at = at.clamp(0.0, last as f64);
-    let k = (at as usize).clamp(1, last - 2);
-    let f = at - k as f64;
-    let [a, b, c, d] = [x[k - 1], x[k], x[k + 1], x[k + 2]];
-    -f * (f - 1.0) * (f - 2.0) / 6.0 * a + (f + 1.0) * (f - 1.0) * (f - 2.0) / 2.0 * b - (f + 1.0) * f * (f - 2.0) / 2.0 * c
-        + (f + 1.0) * f * (f - 1.0) / 6.0 * d
+/// Samples that a value between them is interpolated from.
+const TAPS: isize = 8;
+
+/// Values of an even grid later than some of its samples by a part of them, by the polynomial of degree 7 through eight samples. Beyond its ends
+/// the signal is constant.
+pub fn shifted(x: &[f64], at: impl IntoIterator<Item = usize>, by: f64) -> Vec<f64> {
+    let first = by.floor() - (TAPS / 2 - 1) as f64;
+    let f = by - first;
+    let others = |i: isize| (0..TAPS).filter(move |&j| j != i);
+    let weight = |i: isize| others(i).map(|j| (f - j as f64) / (i - j) as f64).product();
+    let weights: Vec<f64> = (0..TAPS).map(weight).collect();
+    let (first, last) = (first as isize, x.len().saturating_sub(1));
+    let value = |k: usize| -> f64 {
+        let near = |i: usize| x[k.saturating_add_signed(first + i as isize).min(last)];
+        weights.iter().enumerate().map(|(i, weight)| weight * near(i)).sum()
+    };
+    at.into_iter().map(value).collect()
 }
+
+/// The standard deviation of white noise beside a signal, from sixth differences: those of the signal itself are far smaller.
+pub fn noise(x: &[f64]) -> f64 {
+    let mut differences = x.to_vec();
+    for _ in 0..6 {
+        differences = differences.windows(2).map(|pair| pair[1] - pair[0]).collect();
+    }
+    // The sum of squares of binomial coefficients.
+    spread(&differences) / 924f64.sqrt()
+}
+
+/// Slopes of an even signal: central differences of the fourth order, of the second near the ends.
+pub fn slopes(x: &[f64], period: f64) -> Vec<f64> {
+    let mut slopes = derivative(x, period);
+    for k in 2..x.len().saturating_sub(2) {
+        slopes[k] = (8.0 * (x[k + 1] - x[k - 1]) - (x[k + 2] - x[k - 2])) / (12.0 * period);
+    }
+    slopes
+}
+
+/// What [`slopes`] makes of white noise, times the period.
+pub const NOISE_OF_SLOPES: f64 = 0.950_146;
 
 /// Central differences, one-sided at the ends.
 pub fn derivative(x: &[f64], period: f64) -> Vec<f64> {
@@ -243,10 +270,13 @@ mod tests {
             assert!((found - cubic(at)).abs() < 1e-12);
         }
         assert_eq!(pieces(&t, period(&t)), [0..6, 6..8]);
-        let even: Vec<f64> = (0..9).map(|k| cubic(f64::from(k))).collect();
-        for at in [0.3, 1.0, 4.5, 7.9] {
-            assert!((between(&even, at) - cubic(at)).abs() < 1e-9 * cubic(8.0).abs(), "{at}");
+        let even: Vec<f64> = (0..20).map(|k| cubic(f64::from(k))).collect();
+        for by in [-2.0, -0.7, 0.0, 0.3, 1.5] {
+            for (k, found) in (6..12).zip(shifted(&even, 6..12, by)) {
+                assert!((found - cubic(f64::from(k) + by)).abs() < 1e-9 * cubic(19.0).abs(), "{by}");
+            }
         }
+        assert_eq!(shifted(&even, [0, 19], 0.0), [even[0], even[19]]);
         assert_eq!(median(&[3.0, 1.0, 2.0, 10.0]), 2.5);
     }
 

@@ -14,6 +14,7 @@ use crate::finding::{Code, Finding, Findings};
 use crate::log::Log;
 use crate::signal::{median, period, LONGEST_GAP};
 
+pub use states::again;
 pub use torques::torques;
 
 /// A joint that stays within this does not move, rad or m.

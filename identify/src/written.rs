@@ -9,6 +9,7 @@
 
 use armgen_codegen::derive::parameters::nominal;
 use armgen_codegen::description::{Dimension, RobotDescription, Value, INERTIA_ELEMENTS};
+use armgen_codegen::diagnostic::{Code as Fault, Colour, Severity};
 use armgen_codegen::document::edit::{edit, Change, Step};
 use armgen_codegen::document::{excerpt, Expression, ExpressionKind, Unit};
 use armgen_codegen::exact::{Number, Polynomial, Rational};
@@ -438,7 +439,12 @@ pub fn write_finer(
         let again = Source::new(source.name(), text.as_str());
         let (read, diagnostics) = validate::read(&again);
         let Some((manipulator, _)) = read.filter(|_| !diagnostics.has_errors()) else {
-            let text = diagnostics.render(&again, armgen_codegen::diagnostic::Colour::Never);
+            let text = diagnostics.render(&again, Colour::Never);
+            let mut errors = diagnostics.iter().filter(|of| of.code.severity() == Severity::Error);
+            if errors.all(|of| of.code == Fault::ImpossibleInertia) {
+                reason = format!("rounded to {digits} digits, no bodies have these inertias:\n{text}");
+                continue;
+            }
             return Err(format!("with the new numbers the description is faulty, so nothing is written:\n{text}"));
         };
         reread(&manipulator, arm, &written)?;

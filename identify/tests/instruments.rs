@@ -31,7 +31,8 @@ fn judged(log: &str, instruments: bool) -> (Identified, bool, f64) {
     let (log, mut findings) = read("log.csv", log.as_bytes(), &Format { with_reference: instruments, ..format(&arm) });
     assert_eq!(log.unused.is_empty(), instruments, "the reference is a column that is not used");
     let options = Options { instruments, cutoff: Some(8.0), ..Options::default() };
-    let found = identify(&arm, &[Input { log, ..Input::default() }], &options, &mut findings).expect("a good log");
+    let found = identify(&arm, &[Input { log, ..Input::default() }], &options, &mut findings)
+        .unwrap_or_else(|| panic!("{}", findings.render()));
     let warned = findings.iter().any(|finding| finding.code == Code::BiasedRegressor);
     let truth = &arm.combination * arm.nominal();
     let off = |(k, base): (usize, &armgen_identify::identify::Interval)| (base.value - truth[k]).abs() / (base.high - base.low);

@@ -1,5 +1,6 @@
 //! Columns under other signs, other joints and other units: each joint and each pair is named.
 
+use armgen_identify::consistent::{consistent, rise};
 use armgen_identify::finding::{Code, Findings};
 use armgen_identify::identify::{identify, Identified, Input};
 use armgen_identify::log::read;
@@ -120,6 +121,52 @@ fn a_slide_and_a_turn_about_one_axis_are_told_apart() {
     }
 }
 
+/// Two joints of one kind whose exchange fits as well are told by their inertias, in a warning: the turning joints of a SCARA whose forearm is light.
+/// The right order of a description that is far off is not, and neither is what noise hides.
+#[test]
+fn inertias_tell_only_what_they_show() {
+    let order = |guess: &str, truth: &str, noise: f64, exchanged: Option<(usize, usize)>| {
+        let arm = arm(guess);
+        let (n, mut motion) = (arm.dof(), motion(truth, 4, 15.0, 50.0));
+        let mut random = Random(8);
+        for j in 0..n {
+            let size = crate::arms::rms(motion.tau.iter().skip(j).step_by(n));
+            motion.tau.iter_mut().skip(j).step_by(n).for_each(|tau| *tau += noise * size * random.normal());
+        }
+        if let Some((i, k)) = exchanged {
+            [&mut motion.q, &mut motion.dq, &mut motion.tau].into_iter().for_each(|x| exchange(x, n, i, k));
+        }
+        let (log, mut findings) = read("log.csv", csv(&arm, &motion, 6).as_bytes(), &format(&arm));
+        identify(&arm, &[Input { log, ..Input::default() }], &Options::default(), &mut findings);
+        let mut orders = findings.iter().filter(|of| of.code == Code::JointOrder);
+        orders.next().map(|of| of.text.clone())
+    };
+    let truth = scara_with_a_turn();
+    // Numbers of a description that are off, but not by the factor that tells.
+    let off = truth
+        .replace("ratio: 300, inertia: 2e-5", "ratio: 300, inertia: 4e-6")
+        .replace("ratio: 20, inertia: 3e-4", "ratio: 20, inertia: 6e-4");
+    assert_eq!(order(&off, &truth, 0.01, None), None);
+    assert!(order(&off, &truth, 0.01, Some((2, 3))).is_some());
+    // Numbers in the wrong order, which the log does not refute.
+    let wrong = truth.replace("ratio: 20, inertia: 3e-4", "ratio: 20, inertia: 3e-2");
+    assert_eq!(order(&wrong, &truth, 3.0, None), None);
+    // A light forearm: the exchange of both turning joints fits as well.
+    let light = SCARA
+        .replace(
+            "mass: 6, com: [0.15, -0.02, 0.03], inertia: {xx: 0.03, yy: 0.06, zz: 0.07}",
+            "mass: 0.6, com: [0.02, 0, 0.03], inertia: {xx: 0.01, yy: 0.01, zz: 0.01}",
+        )
+        .replace("mass: 2.5", "mass: 0.25")
+        .replace(
+            "ratio: 80, inertia: 1e-4}, friction: {viscous: 2, coulomb: 3}",
+            "ratio: 80, inertia: 4e-4}, friction: {viscous: 2, coulomb: 3}",
+        );
+    println!("{:?}", order(&light, &light, 0.05, Some((0, 1))));
+    assert_eq!(order(&light, &light, 0.05, None), None);
+    assert!(order(&light, &light, 0.05, Some((0, 1))).is_some_and(|text| text.starts_with("inertias come near")));
+}
+
 /// A joint that is turned in position and rate, or in its torque too, where the arm is no mirror image of itself.
 #[test]
 fn a_turned_joint_is_named() {
@@ -143,6 +190,48 @@ fn a_turned_joint_is_named() {
     let said = turned(0, false);
     assert!(of(&said, Code::SignSuspected)[0].1.contains("the sign of tau_base is turned"), "{}", said.render());
     assert!(!turned(0, true).has_errors());
+}
+
+/// Turns joints in position, rate and torque.
+fn turn(motion: &mut Motion, n: usize, joints: &[usize]) {
+    for x in [&mut motion.q, &mut motion.dq, &mut motion.tau] {
+        x.iter_mut().enumerate().filter(|(k, _)| joints.contains(&(k % n))).for_each(|(_, x)| *x *= -1.0);
+    }
+}
+
+/// The mirror image of a SCARA has both turning joints turned, so one turned joint is the image of the other: both are named. A slide along gravity
+/// that is turned has a negative mass.
+#[test]
+fn a_turned_joint_of_a_scara_is_named_with_its_image() {
+    for (turned, named) in [(0, ["j1", "j2"].as_slice()), (1, ["j1", "j2"].as_slice()), (2, ["j3"].as_slice())] {
+        let findings = found(SCARA, &|motion| turn(motion, 3, &[turned]));
+        let said = of(&findings, Code::SignSuspected);
+        assert!(said.len() == 1, "{}", findings.render());
+        for name in named {
+            assert!(said[0].1.contains(&format!("with the other sign of q_{name}, dq_{name}, tau_{name}")), "{}", said[0].1);
+        }
+    }
+}
+
+/// Exact symmetries: the mirror image of the arm explains a log with turned joints to its last digit, so no log shows them. The rotor of a slide along
+/// gravity turns as the arm does, which is no symmetry: it is left out.
+#[test]
+fn mirror_images_explain_turned_logs_exactly() {
+    let scara = SCARA.replace("motor: {ratio: 300, inertia: 2e-5}, friction: {viscous: 30", "friction: {viscous: 30");
+    for (text, turned) in [(ELBOW, [0].as_slice()), (scara.as_str(), [0, 1].as_slice())] {
+        let arm = arm(text);
+        let mut motion = motion(text, 4, 15.0, 100.0);
+        turn(&mut motion, 3, turned);
+        let (log, mut findings) = read("log.csv", csv(&arm, &motion, 8).as_bytes(), &format(&arm));
+        let found = identify(&arm, &[Input { log, ..Input::default() }], &Options::default(), &mut findings);
+        let found = found.unwrap_or_else(|| panic!("{}", findings.render()));
+        let named = findings.iter().any(|of| matches!(of.code, Code::SignSuspected | Code::JointOrder | Code::PoorFit));
+        assert!(!named, "{}", findings.render());
+        assert!(found.judgements[0].moving.iter().all(|moving| *moving < 1e-4), "{:?}", found.judgements[0].moving);
+        // Its bodies exist, too.
+        let (rise, _) = rise(&arm, &found.reduced, &consistent(&arm, &found.reduced));
+        assert!(rise < 1.0, "{rise}");
+    }
 }
 
 #[test]

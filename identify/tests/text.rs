@@ -398,4 +398,16 @@ fn an_impossible_body_is_not_written() {
     of.bodies[1] = body::ten(7.0, Vector3::zeros(), &Matrix3::from_diagonal(&Vector3::new(0.02, 0.1, 0.12 * (1.0 + 1e-6))));
     let refused = write(&source, &arm, &found, &of).expect_err("no body has this inertia");
     assert!(refused.contains("`shoulder`"), "{refused}");
+    // A rod of little width across all axes: rounded to few digits it has a negative principal moment, which `check` refuses as impossible.
+    let along = Vector3::new(1.0, 2.0, 3.0).normalize();
+    let mut rod = |width: f64| {
+        let tensor = Matrix3::identity() * (1.0 + 2.0 * width) - along * along.transpose();
+        of.bodies[1] = body::ten(7.0, Vector3::new(-0.18, 0.01, 0.03), &(0.1 * tensor));
+        write(&source, &arm, &found, &of)
+    };
+    let few = rod(1e-2).expect("few digits").digits;
+    let more = rod(1e-6).expect("more digits").digits;
+    assert!(few < more, "{few} {more}");
+    let refused = rod(1e-15).expect_err("twelve digits are too few");
+    assert!(refused.contains("rounded to 12 digits, no bod"), "{refused}");
 }

@@ -5,20 +5,32 @@
 //! ```
 //!
 //! The column is that of the predicted torque: the measured one has noise, which makes a delay seem smaller and more certain than it is.
-//! A grid finds where Gauss and Newton's steps begin.
+//!
+//! Dry friction jumps where a rate changes its sign, and a sampled torque shows the sign of a delay before its sample. Its columns are taken there:
+//! shifted between samples, a sampled jump is off by up to a period. So the sum of squares has a jump wherever a delay moves a reversal to another
+//! sample, and between these it is smooth. Gauss and Newton's steps come near, a grid finds the stretch between jumps, further steps the place in it.
 
 use nalgebra::DVector;
 
 use crate::estimate::{Column, Estimate};
-use crate::fit::{covariance, solve, solve_fast, Equations, Gram, Row, Sums};
-use crate::signal::rms;
+use crate::fit::{covariance, solve, solve_fast, Equations, Gram, Row, Solution, Sums};
+use crate::prepare::Piece;
+use crate::signal::{rms, slopes};
 
-/// Delays that are tried, in steps, and the step, s.
-const GRID: std::ops::RangeInclusive<i32> = -4..=10;
-const STEP: f64 = 2.5e-3;
+/// A grid of delays about those at hand: steps to either side, and the step, s.
+type Grid = (std::ops::RangeInclusive<i32>, f64);
+
+/// All delays that there are.
+const COARSE: [Grid; 1] = [(-4..=10, 2.5e-3)];
+
+/// About delays that are nearly right.
+const FINE: [Grid; 4] = [(-6..=6, 1e-3), (-4..=4, 2.5e-4), (-4..=4, 6e-5), (-3..=3, 1.5e-5)];
 
 /// The least and the largest delay, s.
 const LIMITS: [f64; 2] = [-1e-2, 2.5e-2];
+
+/// A delay this near to them is at its limit, s.
+const AT_LIMIT: f64 = 1e-4;
 
 /// Half of an interval is at most that wide where a delay counts as determined, s.
 const DETERMINED: f64 = 1e-2;
@@ -26,27 +38,30 @@ const DETERMINED: f64 = 1e-2;
 /// A residual above this part of the torque of its joint is an outlier.
 const OUTLIER: f64 = 0.5;
 
-/// Gauss and Newton's steps at most.
-const STEPS: usize = 12;
+/// Gauss and Newton's steps at most: before a grid, behind it, and where there is none.
+const STEPS: [usize; 3] = [5, 4, 12];
 
-/// A delay that changes by less has been found, s.
-const SETTLED: f64 = 1e-6;
+/// The largest of these, and the largest behind the fine grid, s.
+const LARGEST: [f64; 2] = [5e-3, 4e-5];
+
+/// A delay that changes by less has been found, s: at first, and where no grid follows.
+const SETTLED: [f64; 2] = [1e-4, 1e-8];
 
 impl Estimate<'_> {
     /// Whether a delay is the first or the last of those that are tried.
     pub fn is_last_delay(delay: f64) -> bool {
-        LIMITS.iter().any(|end| (delay - end).abs() < 1e-9)
+        LIMITS.iter().any(|end| (delay - end).abs() < AT_LIMIT)
     }
 
     /// From now on delays are unknowns. They begin where the sum of squares is least on a grid.
     pub fn seek_delays(&mut self) {
-        self.delays_of_grid();
+        self.delays_of_grid(&COARSE);
         let (equations, _) = self.equations(None);
         self.fit(&equations);
         for (row, weight) in equations.rows.iter().zip(&self.weights) {
             self.seeks_delay[row.joint] |= *weight > 0.0;
         }
-        self.settle();
+        self.step_delays(0);
     }
 
     /// The active columns, and those of delays.
@@ -55,39 +70,120 @@ impl Estimate<'_> {
         self.active.iter().copied().chain(sought.map(|j| self.place(Column::Delay(j)))).collect()
     }
 
-    /// Gauss and Newton's steps until delays stay, through instruments where there are any. The standard error of each delay, and half of its
-    /// interval; infinite where the logs do not show it, none where it is given.
-    pub fn settle(&mut self) -> Vec<Option<[f64; 2]>> {
+    /// The delays that explain the logs best, through instruments where there are any. The standard error of each, and half of its interval;
+    /// infinite where the logs do not show it, none where it is given.
+    pub fn settle(&mut self, from_afar: bool) -> Vec<Option<[f64; 2]>> {
+        if from_afar {
+            self.step_delays(0);
+        }
+        let is_direct = self.along_reference.is_none();
+        let mut weights = None;
+        if is_direct {
+            self.delays_of_grid(if from_afar { &FINE } else { &FINE[FINE.len() - 2..] });
+            weights = self.step_delays(1);
+        }
         let n = self.arm.dof();
-        let all = self.with_delays();
-        let own = std::mem::replace(&mut self.active, all);
         let mut errors = vec![None; n];
-        for round in 0..STEPS {
-            let (mut equations, _) = self.equations(None);
-            let projected = self.with_instruments(&mut equations);
-            let columns = projected.as_ref().unwrap_or(&equations);
-            let sums = Sums::new(columns, &self.active);
-            let mut weights = self.even_weights(&equations);
-            self.take(&solve_fast(&sums.gram(&weights)));
-            weights = self.even_weights(&equations);
-            let solution = solve(&sums.gram(&weights), &DVector::zeros(self.active.len()));
-            self.take(&solution.x);
-            if self.move_delays() > SETTLED && round + 1 < STEPS {
-                continue;
-            }
-            let residuals = equations.residuals(&self.active, &solution.x);
-            let covariance = covariance(columns, &self.active, &residuals, &weights, &solution.inverse, n);
+        let own = self.activate_delays();
+        let (mut equations, known) = self.equations(None);
+        let projected = self.with_instruments(&mut equations);
+        let (weights, solution) = self.fit_delays(projected.as_ref().unwrap_or(&equations), &equations, weights, is_direct);
+        let residuals = equations.residuals(&self.active, &solution.x);
+        let sigmas = |columns: &Equations, solution: &Solution| {
+            let of = covariance(columns, &self.active, &residuals, &weights, &solution.inverse, n);
+            let sigma = |k: usize| {
+                let is_hidden = solution.hidden.iter().any(|direction| direction[k].abs() > 0.1 * direction.amax());
+                if is_hidden {
+                    f64::INFINITY
+                } else {
+                    of.matrix[(k, k)].max(0.0).sqrt()
+                }
+            };
+            ((0..self.active.len()).map(sigma).collect::<Vec<f64>>(), of.reach)
+        };
+        let (mut found, reach) = sigmas(projected.as_ref().unwrap_or(&equations), &solution);
+        if is_direct {
+            // Of samples, jumps tell a delay to the distance of their places within a period. What is smooth may tell it better.
+            self.fill_delays(&mut equations, &known, false);
+            let smooth = solve(&Sums::new(&equations, &self.active).gram(&weights), &DVector::zeros(self.active.len()));
+            let (smooth, _) = sigmas(&equations, &smooth);
             for (k, &place) in self.active.iter().enumerate() {
                 if let Column::Delay(j) = self.columns[place] {
-                    let sigma = covariance.matrix[(k, k)].max(0.0).sqrt();
-                    let is_hidden = solution.hidden.iter().any(|direction| direction[k].abs() > 0.1 * direction.amax());
-                    errors[j] = Some([sigma, if is_hidden { f64::INFINITY } else { covariance.reach * sigma }]);
+                    found[k] = found[k].hypot(self.apart(j)).min(smooth[k]);
                 }
             }
-            break;
+        }
+        for (k, &place) in self.active.iter().enumerate() {
+            if let Column::Delay(j) = self.columns[place] {
+                errors[j] = Some([found[k], reach * found[k]]);
+                self.x[place] = 0.0;
+            }
         }
         self.active = own;
         errors
+    }
+
+    /// The mean distance of the places that reversals of a joint have within a period, s.
+    fn apart(&self, j: usize) -> f64 {
+        let n = self.arm.dof();
+        let rate = |piece: &Piece, k: usize| piece.dq[k * n + j];
+        let of = |piece: &Piece| piece.kept.windows(2).filter(|k| rate(piece, k[0]) * rate(piece, k[1]) < 0.0).count();
+        let reversals: usize = self.pieces.iter().map(of).sum();
+        self.pieces.iter().fold(0.0f64, |longest, piece| longest.max(piece.period)) / reversals as f64
+    }
+
+    /// Puts the delays among the active columns; those that were active alone.
+    fn activate_delays(&mut self) -> Vec<usize> {
+        let all = self.with_delays();
+        std::mem::replace(&mut self.active, all)
+    }
+
+    /// Gauss and Newton's steps until delays stay: from afar, or behind the fine grid. The weights of the rows.
+    fn step_delays(&mut self, stage: usize) -> Option<Vec<f64>> {
+        let is_last = stage == 1 || self.along_reference.is_some();
+        let steps = STEPS[if self.along_reference.is_some() { 2 } else { stage }];
+        let own = self.activate_delays();
+        let mut weights = None;
+        for _ in 0..steps {
+            let (mut equations, known) = self.equations(None);
+            if stage == 1 {
+                self.fill_delays(&mut equations, &known, false);
+            }
+            let projected = self.with_instruments(&mut equations);
+            let before = weights.take().filter(|_| stage == 1);
+            weights = Some(self.fit_delays(projected.as_ref().unwrap_or(&equations), &equations, before, stage == 1).0);
+            if self.move_delays(LARGEST[stage]) < SETTLED[usize::from(is_last)] {
+                break;
+            }
+        }
+        self.active = own;
+        weights
+    }
+
+    /// The fit of the active columns, and its weights, from those of nearly the same equations. Where delays are nearly right, outliers are those
+    /// beside the median.
+    fn fit_delays(
+        &mut self,
+        columns: &Equations,
+        equations: &Equations,
+        before: Option<Vec<f64>>,
+        is_near: bool,
+    ) -> (Vec<f64>, Solution) {
+        let sums = Sums::new(columns, &self.active);
+        let rounds = if is_near && before.is_none() { 4 } else { 1 };
+        let mut weights = before.unwrap_or_else(|| self.even_weights(equations));
+        for _ in 0..rounds {
+            self.take(&solve_fast(&sums.gram(&weights)));
+            weights = if is_near {
+                let x = DVector::from_fn(self.active.len(), |k, _| self.x[self.active[k]]);
+                equations.weights(&equations.residuals(&self.active, &x), self.arm.dof()).0
+            } else {
+                self.even_weights(equations)
+            };
+        }
+        let solution = solve(&sums.gram(&weights), &DVector::zeros(self.active.len()));
+        self.take(&solution.x);
+        (weights, solution)
     }
 
     /// Weights of the residuals of the estimate by their root of mean squares, nearly without Huber's: samples show a reversal up to a period
@@ -110,28 +206,28 @@ impl Estimate<'_> {
     }
 
     /// Adds the changes that a fit found to the delays; the largest.
-    fn move_delays(&mut self) -> f64 {
+    fn move_delays(&mut self, most: f64) -> f64 {
         let mut largest = 0.0f64;
         for j in (0..self.arm.dof()).filter(|&j| self.seeks_delay[j]) {
             let place = self.place(Column::Delay(j));
-            let change = self.x[place].clamp(-2.0 * STEP, 2.0 * STEP);
-            let next = (self.delays[j] + change).clamp(LIMITS[0], LIMITS[1]);
+            let next = (self.delays[j] + self.x[place].clamp(-most, most)).clamp(LIMITS[0], LIMITS[1]);
             largest = largest.max((next - self.delays[j]).abs());
             (self.delays[j], self.x[place]) = (next, 0.0);
         }
         largest
     }
 
-    /// Leaves delays at 0 whose intervals are wider than delays are. Whether there are any.
+    /// Leaves delays at 0 whose intervals are wider than delays are, and have 0. Whether there are any.
     pub fn leave_undetermined_delays(&mut self, errors: &[Option<[f64; 2]>]) -> bool {
-        let left: Vec<usize> =
-            (0..errors.len()).filter(|&j| errors[j].is_some_and(|[_, half]| half.is_nan() || half > DETERMINED)).collect();
+        let is_left = |j: usize, half: f64| half.is_nan() || half > DETERMINED.max(self.delays[j].abs());
+        let left: Vec<usize> = (0..errors.len()).filter(|&j| errors[j].is_some_and(|[_, half]| is_left(j, half))).collect();
         left.iter().for_each(|&j| (self.seeks_delay[j], self.delays[j]) = (false, 0.0));
         !left.is_empty()
     }
 
-    /// The columns of delays that are unknown: the slope of the torque that the estimate predicts, with the other sign. `known` is by row.
-    pub(super) fn fill_delays(&self, equations: &mut Equations, known: &[f64]) {
+    /// The columns of delays that are unknown: the slope of the torque that the estimate predicts, with the other sign. `known` is by row. Without
+    /// dry friction it is that between jumps.
+    pub(super) fn fill_delays(&self, equations: &mut Equations, known: &[f64], with_dry: bool) {
         let n = self.arm.dof();
         let unknown: Vec<(usize, usize)> =
             (0..n).filter(|&j| self.seeks_delay[j]).map(|j| (j, self.place(Column::Delay(j)))).collect();
@@ -139,8 +235,12 @@ impl Estimate<'_> {
             .active
             .iter()
             .map(|&place| (place, self.x[place]))
-            .filter(|(place, _)| !matches!(self.columns[*place], Column::Delay(_)))
             .chain(self.fixed.iter().copied())
+            .filter(|(place, _)| match self.columns[*place] {
+                Column::Delay(_) => false,
+                Column::Friction(_, _, term) => with_dry || !term.is_dry(),
+                _ => true,
+            })
             .collect();
         let mut start = 0;
         for piece in self.pieces {
@@ -161,8 +261,9 @@ impl Estimate<'_> {
         }
     }
 
-    /// The delays of a grid that lower the sum of squares most, a joint after the other, all else fitted anew.
-    fn delays_of_grid(&mut self) {
+    /// The delays of grids, each about the best of the one before, that lower the sum of squares most; a joint after the other, all else fitted
+    /// anew.
+    fn delays_of_grid(&mut self, grids: &[Grid]) {
         let (equations, known) = self.equations(None);
         let n = self.arm.dof();
         let sums = Sums::new(&equations, &self.active);
@@ -170,36 +271,69 @@ impl Estimate<'_> {
         let mut grams = sums.grams(&weights, n, |k| equations.rows[k].joint);
         for j in 0..n {
             let rows = sums.rows(j);
-            if rows.iter().all(|&k| weights[k] == 0.0) {
+            let is_given = grids.len() > COARSE.len() && !self.seeks_delay[j];
+            if is_given || rows.iter().all(|&k| weights[k] == 0.0) {
                 continue;
             }
             // What is known of a torque.
             let fixed = |k: usize| self.fixed.iter().map(|(place, value)| equations.row(k)[*place] * value).sum::<f64>();
             let known: Vec<f64> = rows.iter().map(|&k| known[k] + fixed(k)).collect();
-            let with = |delay: f64| {
-                let tau = self.pieces.iter().flat_map(|piece| piece.delayed(j, delay));
-                let b: Vec<f64> = tau.zip(&known).map(|(tau, known)| tau * self.corrections[j] - known).collect();
-                let weighted = rows.iter().zip(&b).map(|(&k, b)| weights[k] * b);
-                let bb = weighted.clone().zip(&b).map(|(wb, b)| wb * b).sum();
-                Gram { h: grams[j].h.clone(), g: sums.times(j, weighted), bb }
-            };
+            let weights: Vec<f64> = rows.iter().map(|&k| weights[k]).collect();
+            let with = |delay: f64| self.with_delay(&sums, &grams[j], j, delay, &known, &weights);
+            let mut others = Gram::zero(self.active.len());
+            grams.iter().enumerate().filter(|(other, _)| *other != j).for_each(|(_, gram)| others.add(gram));
             let cost = |own: &Gram| {
                 let mut whole = own.clone();
-                grams.iter().enumerate().filter(|(other, _)| *other != j).for_each(|(_, gram)| whole.add(gram));
+                whole.add(&others);
                 whole.squares(&solve_fast(&whole))
             };
-            let tried = GRID.map(|k| f64::from(k) * STEP).map(|delay| (delay, with(delay)));
-            let best = tried.map(|(delay, own)| (cost(&own), delay, own)).min_by(|a, b| a.0.total_cmp(&b.0)).expect("a grid");
+            let mut best = (f64::INFINITY, self.delays[j], grams[j].clone());
+            for (steps, step) in grids {
+                let middle = best.1;
+                for delay in steps.clone().map(|k| (middle + f64::from(k) * step).clamp(LIMITS[0], LIMITS[1])) {
+                    let own = with(delay);
+                    let cost = cost(&own);
+                    if cost < best.0 {
+                        best = (cost, delay, own);
+                    }
+                }
+            }
             (self.delays[j], grams[j]) = (best.1, best.2);
         }
     }
-}
 
-/// Slopes of an even signal: central differences of the fourth order, of the second near the ends.
-fn slopes(x: &[f64], spacing: f64) -> Vec<f64> {
-    let mut slopes = crate::signal::derivative(x, spacing);
-    for k in 2..x.len().saturating_sub(2) {
-        slopes[k] = (8.0 * (x[k + 1] - x[k - 1]) - (x[k + 2] - x[k - 2])) / (12.0 * spacing);
+    /// The sums of a joint's rows with another delay of it; `known` and `weights` are those of its rows.
+    fn with_delay(&self, sums: &Sums, gram: &Gram, j: usize, delay: f64, known: &[f64], weights: &[f64]) -> Gram {
+        let mut gram = gram.clone();
+        let tau = self.pieces.iter().flat_map(|piece| piece.delayed(j, delay));
+        let b: Vec<f64> = tau.zip(known).map(|(tau, known)| tau * self.corrections[j] - known).collect();
+        let product = |x: &[f64], y: &[f64]| x.iter().zip(y).zip(weights).map(|((x, y), w)| w * x * y).sum::<f64>();
+        let times = |x: &[f64]| sums.times(j, x.iter().zip(weights).map(|(x, w)| w * x));
+        (gram.g, gram.bb) = (times(&b), product(&b, &b));
+        let mut dry: Vec<(usize, Vec<f64>)> = Vec::new();
+        for (k, &place) in self.active.iter().enumerate() {
+            let Column::Friction(session, joint, term) = self.columns[place] else { continue };
+            if joint != j || !term.is_dry() {
+                continue;
+            }
+            let of_piece = |(piece, sizes): (&Piece, &Vec<f64>)| {
+                if self.runs[piece.log].session == session {
+                    piece.friction(j, term, self.velocities[j], sizes, delay)
+                } else {
+                    vec![0.0; piece.kept.len()]
+                }
+            };
+            dry.push((k, self.pieces.iter().zip(&self.sizes).flat_map(of_piece).collect()));
+        }
+        for (k, column) in &dry {
+            let with_others = times(column);
+            gram.h.set_column(*k, &with_others);
+            gram.h.set_row(*k, &with_others.transpose());
+            gram.g[*k] = product(column, &b);
+        }
+        for (k, column) in &dry {
+            dry.iter().for_each(|(l, other)| gram.h[(*k, *l)] = product(column, other));
+        }
+        gram
     }
-    slopes
 }

@@ -13,7 +13,6 @@ use nalgebra::{DMatrix, DVector};
 
 use crate::estimate::{Column, Estimate};
 use crate::fit::{block_length, reach, scores, solve, Equations, Gram, Solution, Sums};
-use crate::prepare::Friction;
 use crate::signal::LowPass;
 
 impl Estimate<'_> {
@@ -24,9 +23,7 @@ impl Estimate<'_> {
         let mut along = Estimate { pieces, along_reference: None, ..self.clone() };
         along.renew_sizes();
         let (instruments, _) = along.equations(None);
-        let is_dry = |place: &usize| {
-            matches!(self.columns[*place], Column::Friction(_, _, Friction::Coulomb | Friction::Load | Friction::Stribeck))
-        };
+        let is_dry = |place: &usize| matches!(self.columns[*place], Column::Friction(_, _, term) if term.is_dry());
         for &place in self.active.iter().filter(|place| is_dry(place)) {
             for k in 0..equations.rows.len() {
                 equations.a[k * equations.columns + place] = instruments.row(k)[place];

@@ -5,7 +5,7 @@ use armgen_codegen::diagnostic::Severity;
 use crate::arm::Arm;
 use crate::finding::{Code, Finding, Findings};
 use crate::log::Log;
-use crate::signal::{between, derivative, pieces, LowPass, LONGEST_GAP};
+use crate::signal::{derivative, pieces, shifted, LowPass, LONGEST_GAP};
 
 use super::{range, STILL};
 
@@ -245,7 +245,7 @@ impl Alignment {
         if inside.len() < 20 {
             return None;
         }
-        let later = |by: f64| inside.clone().map(move |k| between(slope, k as f64 - by));
+        let later = |by: f64| shifted(slope, inside.clone(), -by);
         let own = &rate[inside.clone()];
         let fit = |by: f64| {
             let (ab, bb) = own.iter().zip(later(by)).fold((0.0, 0.0), |(ab, bb), (a, b)| (ab + a * b, bb + b * b));
@@ -258,7 +258,7 @@ impl Alignment {
             let bend = fits[best - 1] - 2.0 * fits[best] + fits[best + 1];
             by += if bend < 0.0 { 0.5 * (fits[best - 1] - fits[best + 1]) / bend } else { 0.0 };
         }
-        let model: Vec<f64> = later(by).collect();
+        let model = later(by);
         let bent = derivative(&model, period);
         let dot = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>();
         let (ab, bb, aa) = (dot(own, &model), dot(&model, &model), dot(own, own));

@@ -19,7 +19,7 @@ const INERTIAS: usize = 12;
 /// Sums of the equations of an estimate, by joint of the row and joint of the torque.
 pub(super) struct Sides {
     pub(super) equations: Equations,
-    /// By row, 1 or 0.
+    /// Weights of the rows.
     counts: Vec<f64>,
     pub(super) active: Vec<usize>,
     size: Vec<f64>,
@@ -50,14 +50,16 @@ pub(super) struct Fit {
 }
 
 impl Sides {
-    pub(super) fn new(estimate: &Estimate<'_>) -> Sides {
+    /// `weights` of the rows; without any, all that count have the same.
+    pub(super) fn new(estimate: &Estimate<'_>, weights: &[f64]) -> Sides {
         let n = estimate.arm.dof();
         let (equations, _) = estimate.equations(None);
         let active = estimate.active.clone();
         let of = |j: usize| (0..equations.rows.len()).filter(move |k| k % n == j);
         let size = (0..n).map(|j| rms(&of(j).map(|k| equations.b[k]).collect::<Vec<_>>()).max(1e-12)).collect();
         let sums = Sums::new(&equations, &active);
-        let counts: Vec<f64> = equations.rows.iter().map(|row| if row.counts { 1.0 } else { 0.0 }).collect();
+        let weight = |k: usize| if equations.rows[k].counts { weights.get(k).copied().unwrap_or(1.0) } else { 0.0 };
+        let counts: Vec<f64> = (0..equations.rows.len()).map(weight).collect();
         let h = sums.grams(&counts, n, |k| equations.rows[k].joint).into_iter().map(|gram| gram.h).collect();
         let pairs = |j: usize, other: usize| sums.rows(j).iter().map(move |&k| (k, k - j + other)).collect::<Vec<_>>();
         let cross = (0..n)
@@ -74,6 +76,10 @@ impl Sides {
             .collect();
         let inequalities = inequalities(estimate);
         Sides { equations, counts, active, size, h, cross, squares, inequalities }
+    }
+
+    pub(super) fn joints(&self) -> usize {
+        self.size.len()
     }
 
     /// Every row counts alike, whatever its joint.
@@ -186,12 +192,24 @@ impl Gain {
     }
 }
 
-/// What bodies and friction keep at least 0, as rows over the active columns: viscous and Coulomb friction, and the mean inertia of each joint.
+/// Of the ten of a body those that are at least 0 whatever the body: its mass, and the moments about the axes of its frame.
+const POSITIVE: [usize; 4] = [0, 4, 6, 9];
+
+/// What bodies and friction keep at least 0, as rows over the active columns: viscous and Coulomb friction, sums of masses and moments, and, last,
+/// the mean inertia of each joint.
 fn inequalities(estimate: &Estimate<'_>) -> DMatrix<f64> {
     let (arm, n, active) = (estimate.arm, estimate.arm.dof(), &estimate.active);
     let mut rows: Vec<DVector<f64>> = Vec::new();
     for (k, &place) in active.iter().enumerate() {
         if matches!(estimate.columns[place], Column::Friction(_, _, Friction::Viscous | Friction::Coulomb)) {
+            rows.push(DVector::from_fn(active.len(), |i, _| f64::from(u8::from(i == k))));
+        }
+    }
+    let is_positive = |column: usize| column >= 10 * arm.links.len() || POSITIVE.contains(&(column % 10));
+    for (k, &place) in active.iter().enumerate() {
+        let Column::Base(base) = estimate.columns[place] else { continue };
+        let row = arm.combination.row(base);
+        if row.iter().enumerate().all(|(column, factor)| *factor == 0.0 || (*factor > 0.0 && is_positive(column))) {
             rows.push(DVector::from_fn(active.len(), |i, _| f64::from(u8::from(i == k))));
         }
     }

@@ -7,7 +7,7 @@ use crate::finding::{Code, Finding, Findings};
 use crate::log::Log;
 
 use super::sides::{is_better, Fit, Sides, Trial};
-use super::states::{reading, Reading};
+use super::states::reading;
 
 /// Joints whose signs are tried in all patterns.
 const SIGNS: usize = 10;
@@ -17,7 +17,7 @@ pub fn torques(estimate: &Estimate<'_>, log: &Log, gains: &[f64], findings: &mut
     let n = estimate.arm.dof();
     let same: Vec<usize> = (0..n).collect();
     let ones = vec![1.0; n];
-    let sides = Sides::new(estimate);
+    let sides = Sides::new(estimate, &[]);
     let own = sides.trial(&same);
     let before = own.plain();
     let left = own.residuals(&ones, &before.x);
@@ -100,7 +100,7 @@ pub fn torques(estimate: &Estimate<'_>, log: &Log, gains: &[f64], findings: &mut
             return true;
         }
     }
-    reading.filter(Reading::is_left).is_some_and(|reading| {
+    reading.is_some_and(|reading| {
         findings.push(reading.told(estimate.arm, log));
         reading.is_certain
     })
