@@ -62,6 +62,9 @@ impl Estimate<'_> {
             self.seeks_delay[row.joint] |= *weight > 0.0;
         }
         self.step_delays(0);
+        // Terms of friction are chosen next, and a delay that is nearly right makes some seem to be there.
+        self.delays_of_grid(&FINE);
+        self.step_delays(1);
     }
 
     /// The active columns, and those of delays.
