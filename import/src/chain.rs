@@ -198,7 +198,7 @@ pub(crate) fn arm(
     }
     let tip = tips[0].1;
     let followers = Followers::take_in((tree, format), base, &mut path, &mut locks, &mut values);
-    let moving: Vec<usize> = path.iter().copied().filter(|&j| tree.joints[j].kind.moves() && locks.of(j).is_none()).collect();
+    let moving: Vec<usize> = path.iter().copied().filter(|&j| locks.let_move(tree, j)).collect();
     if let Some(&joint) = moving.get(MAX_JOINTS) {
         let others = if followers.taken.is_empty() { "" } else { ", and with them" };
         let message = format!(
@@ -356,7 +356,7 @@ impl Builder<'_> {
             let joint = &tree.joints[index];
             let (mut owner, mut pending) = places[&joint.parent].clone();
             let origin = self.format.origin(index, &mut self.values);
-            let moves = joint.kind.moves() && self.locks.of(index).is_none();
+            let moves = self.locks.let_move(self.tree, index);
             pending.extend(origin);
             pending.retain(|pose| !pose.is_nothing());
             self.check_length(&pending, joint.span)?;

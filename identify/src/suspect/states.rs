@@ -54,7 +54,7 @@ impl Reading {
     /// Whether the fit tells, with squares below a part of those of the log as it is. A turned torque and turned states may be mirror images,
     /// which fit alike.
     pub(super) fn is_clear(&self, least: f64) -> bool {
-        let is_turned = self.order.iter().is_sorted_by_key(|(j, _)| *j);
+        let is_turned = is_turned(&self.order);
         self.is_certain && !self.by_inertias && self.fall < if is_turned { 0.5 * least } else { least }
     }
 
@@ -83,8 +83,7 @@ impl Reading {
         };
         let mut text = format!("{with} {}", words(&self.order));
         self.as_well.iter().for_each(|other| text += &format!(", and as far {}", words(other)));
-        let is_exchanged = |(j, of): (usize, &(usize, f64))| of.0 != j;
-        let (code, help) = if self.order.iter().enumerate().any(is_exchanged) {
+        let (code, help) = if !is_turned(&self.order) {
             (Code::JointOrder, "rename the columns under `columns` of the options")
         } else {
             (Code::SignSuspected, "turn the sign of these columns, or the axis of the joint in the description")
@@ -187,6 +186,11 @@ impl<'e> Readings<'e> {
     }
 }
 
+/// Whether each joint has its own states, perhaps with the other sign.
+fn is_turned(order: &Order) -> bool {
+    order.iter().enumerate().all(|(j, of)| of.0 == j)
+}
+
 /// Joints that an order changes.
 fn moved(from: &Order, to: &Order) -> Vec<usize> {
     (0..from.len()).filter(|&j| from[j] != to[j]).collect()
@@ -258,8 +262,7 @@ pub(super) fn reading(estimate: &Estimate<'_>, gains: &[f64]) -> Option<Reading>
             if !is_better(equations, &rest, &after, &joints, n) {
                 // A sign that fits better than by chance is worth a word, before anything else was found.
                 let gain = Gain::of(equations, &rest, &after, &joints, n);
-                let is_turned = other.iter().enumerate().all(|(j, of)| of.0 == j);
-                if is_first && is_turned && gain.sum > (CHANCE[0] * gain.error).max(0.01 * gain.left) {
+                if is_first && is_turned(&other) && gain.sum > (CHANCE[0] * gain.error).max(0.01 * gain.left) {
                     (least, from, is_certain) = (cost, other, false);
                 }
                 break;
@@ -272,7 +275,6 @@ pub(super) fn reading(estimate: &Estimate<'_>, gains: &[f64]) -> Option<Reading>
                 };
                 let mut as_good: Vec<(f64, Order)> = tried.filter(is_as_good).collect();
                 // A sign is turned more often than joints are exchanged.
-                let is_turned = |order: &Order| order.iter().enumerate().all(|(j, of)| of.0 == j);
                 if let Some(turned) = as_good.iter_mut().find(|(_, order)| is_turned(order)).filter(|_| !is_turned(&other)) {
                     after = readings.fitted(&turned.1, whole).residuals();
                     std::mem::swap(&mut turned.0, &mut cost);

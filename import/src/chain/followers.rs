@@ -64,8 +64,7 @@ impl Followers {
         let mut next = 0;
         while let Some(&joint) = path.get(next) {
             next += 1;
-            let moves = |joint: usize, locks: &Locks| tree.joints[joint].kind.moves() && locks.of(joint).is_none();
-            if !moves(joint, locks) {
+            if !locks.let_move(tree, joint) {
                 continue;
             }
             let mut also = Vec::new();
@@ -82,13 +81,13 @@ impl Followers {
                     also.push(leader);
                 }
             }
-            also.extend(locks.followers(joint).iter().filter(|&&other| below[other] && moves(other, locks)));
+            also.extend(locks.followers(joint).iter().filter(|&&other| below[other] && locks.let_move(tree, other)));
             for other in also {
                 join(tree, base, other, path, &mut on_path);
             }
         }
         let taken = path[given..].iter().copied();
-        let taken = taken.filter(|&joint| tree.joints[joint].kind.moves() && locks.of(joint).is_none()).collect();
+        let taken = taken.filter(|&joint| locks.let_move(tree, joint)).collect();
         let followers = Followers { by_joint, taken };
         followers.report_ring(tree, values);
         followers

@@ -167,6 +167,11 @@ impl Locks {
         joint
     }
 
+    /// Whether a joint moves and is not locked.
+    pub(crate) fn let_move(&self, tree: &Tree, joint: usize) -> bool {
+        tree.joints[joint].kind.moves() && self.of(joint).is_none()
+    }
+
     /// The lock of a joint.
     pub(crate) fn of(&self, joint: usize) -> Option<&Lock> {
         self.by_joint.get(&joint)

@@ -34,7 +34,7 @@ fn leaves(tree: &Tree, base: usize, locks: &Locks) -> BTreeMap<usize, Vec<Candid
         for &below in &tree.links[link].below {
             let joint = &tree.joints[below];
             leaf &= tree.links[joint.child].role == Role::Frame;
-            let moves = joint.kind.moves() && locks.of(below).is_none();
+            let moves = locks.let_move(tree, below);
             open.push((joint.child, if moves { Some(below) } else { last }, joints + usize::from(moves)));
         }
         let Some(last) = last else { continue };
@@ -90,12 +90,10 @@ pub(super) fn only(tree: &Tree, base: usize, locks: &Locks, diagnostics: &mut Di
     }
     let mut others: Vec<usize> = leaves.iter().map(|leaf| leaf.link).filter(|&link| link != tip).collect();
     others.sort_by_key(|&link| names::tool(&tree.links[link].name).unwrap_or(usize::MAX));
-    let named: Vec<String> = others.iter().take(NAMED).map(|&link| format!("`{}`", shown(&tree.links[link].name))).collect();
     let note = format!(
-        "the end effector is the link `{}`; frames that are fixed to it may be instead, by `--tip`: {}{}",
+        "the end effector is the link `{}`; frames that are fixed to it may be instead, by `--tip`: {}",
         shown(&tree.links[tip].name),
-        named.join(", "),
-        if others.len() > NAMED { ", ..." } else { "" }
+        listed(others.iter().map(|&link| format!("`{}`", shown(&tree.links[link].name))))
     );
     notes.push(note);
     Some((tip, notes))
@@ -181,7 +179,7 @@ fn before_followers(
     let mut hands: Vec<Candidate> = Vec::new();
     for &(link, joints) in &all {
         let is_outer = all.iter().all(|&(other, _)| other == link || !is_below(link, other));
-        let last = tree.path(base, link).into_iter().flatten().rfind(|&j| tree.joints[j].kind.moves() && locks.of(j).is_none());
+        let last = tree.path(base, link).into_iter().flatten().rfind(|&j| locks.let_move(tree, j));
         let Some(last) = last.filter(|_| is_outer) else { continue };
         if hands.iter().any(|hand| hand.last == last) {
             continue;
@@ -219,16 +217,8 @@ fn keep_the_longest_of_a_series(tree: &Tree, base: usize, groups: &mut BTreeMap<
         return None;
     }
     groups.retain(|&joint, _| joint == last);
-    let named: Vec<String> = earlier
-        .iter()
-        .take(NAMED)
-        .map(|leaf| format!("`{}` ({})", shown(&tree.links[leaf.link].name), number(leaf.joints)))
-        .collect();
-    let more = if earlier.len() > NAMED { ", ..." } else { "" };
-    Some(format!(
-        "links fixed to an earlier link are parts of it; `--tip` ends the arm at one of them: {}{more}",
-        named.join(", ")
-    ))
+    let named = earlier.iter().map(|leaf| format!("`{}` ({})", shown(&tree.links[leaf.link].name), number(leaf.joints)));
+    Some(format!("links fixed to an earlier link are parts of it; `--tip` ends the arm at one of them: {}", listed(named)))
 }
 
 /// Where all branches are fingers of one hand, no finger is the end effector: keeps the hand, with a warning of the joints that rest.
@@ -240,7 +230,7 @@ fn keep_the_arm_before_its_fingers(
     locks: &Locks,
     groups: &mut BTreeMap<usize, Vec<Candidate>>,
 ) -> Option<Diagnostic> {
-    let moves = |joint: usize| tree.joints[joint].kind.moves() && locks.of(joint).is_none();
+    let moves = |joint: usize| locks.let_move(tree, joint);
     let ends: Vec<Candidate> = groups.iter().filter(|(&last, _)| is_finger(tree, last)).map(|(_, leaves)| leaves[0]).collect();
     let (first, others) = ends.split_first().filter(|(_, others)| !others.is_empty())?;
     let mut common = tree.path(base, first.link)?;
@@ -259,14 +249,12 @@ fn keep_the_arm_before_its_fingers(
     *groups = BTreeMap::from([(last, hand)]);
     let fingers = fingers(tree, locks, ends.iter().map(|end| end.last));
     let name = |&joint: &usize| shown(&tree.joints[joint].name);
-    let named: Vec<String> = fingers.iter().take(NAMED).map(|joint| format!("`{}`", name(joint))).collect();
-    let more = if fingers.len() > NAMED { ", ..." } else { "" };
     let rest = if fingers.len() == 1 { "rests" } else { "rest" };
     let message = format!(
-        "the arm ends at `{}` ({}), before its fingers: {}{more} {rest} at 0",
+        "the arm ends at `{}` ({}), before its fingers: {} {rest} at 0",
         shown(&tree.links[link].name),
         number(joints),
-        named.join(", ")
+        listed(fingers.iter().map(|joint| format!("`{}`", name(joint))))
     );
     let help =
         format!("`--lock {}=VALUE` puts a finger elsewhere; `--all` takes all in, and `--tip LINK` one", name(&fingers[0]));
@@ -353,7 +341,7 @@ fn is_finger(tree: &Tree, joint: usize) -> bool {
 
 /// The warning that the last joint of an arm moves a finger, with the options that leave it out.
 fn finger(tree: &Tree, base: usize, last: usize, locks: &Locks) -> Diagnostic {
-    let moves = |joint: usize| tree.joints[joint].kind.moves() && locks.of(joint).is_none();
+    let moves = |joint: usize| locks.let_move(tree, joint);
     let joint = &tree.joints[last];
     let name = shown(&joint.name);
     let message = format!("the last joint, `{name}`, seems to move a finger: the arm ends there, and inverse kinematics use it");
@@ -373,6 +361,15 @@ fn finger(tree: &Tree, base: usize, last: usize, locks: &Locks) -> Diagnostic {
     Diagnostic::new(Code::FingerAsTip, joint.span, message, "a finger?", help)
 }
 
+/// A list for a message, which ends where it would be long.
+fn listed(names: impl Iterator<Item = String>) -> String {
+    let mut names: Vec<String> = names.take(NAMED + 1).collect();
+    if names.len() > NAMED {
+        names[NAMED] = "...".into();
+    }
+    names.join(", ")
+}
+
 /// `1 joint`, `2 joints`.
 fn number(joints: usize) -> String {
     format!("{joints} joint{}", if joints == 1 { "" } else { "s" })
@@ -380,7 +377,7 @@ fn number(joints: usize) -> String {
 
 /// The last link above a tip on which more than one joint moves something, and how many joints move it, if some do.
 fn before_branches(tree: &Tree, base: usize, tip: usize, locks: &Locks) -> Option<(usize, usize)> {
-    let moves = |joint: usize| tree.joints[joint].kind.moves() && locks.of(joint).is_none();
+    let moves = |joint: usize| locks.let_move(tree, joint);
     // Whether a joint, or one below it, moves.
     let moving = |joint: usize| {
         let mut open = vec![joint];

@@ -70,10 +70,17 @@ const MOST_PRODUCTS: u64 = 1 << 30;
 const LONGEST: u64 = 127;
 
 impl Coordinates {
-    pub(super) fn new(mut numerators: Vec<IBig>, mut denominator: UBig) -> Coordinates {
-        let common = common_factor(denominator.clone(), &numerators);
+    pub(super) fn new(numerators: Vec<IBig>, denominator: UBig) -> Coordinates {
+        let factor = denominator.clone();
+        Coordinates::reduced(numerators, denominator, factor)
+    }
+
+    /// Reduced by the common factor of all numerators and a factor of the denominator.
+    fn reduced(mut numerators: Vec<IBig>, mut denominator: UBig, factor: UBig) -> Coordinates {
+        let common = common_factor(factor, &numerators);
         if !common.is_one() {
-            divide(&mut numerators, &common);
+            let divisor = IBig::from(common.clone());
+            numerators.iter_mut().filter(|n| !n.is_zero()).for_each(|n| *n /= &divisor);
             denominator /= common;
         }
         Coordinates { numerators, denominator }
@@ -104,11 +111,8 @@ impl Coordinates {
 
     /// x + y√a.
     pub(super) fn joined(x: &Coordinates, y: &Coordinates) -> Coordinates {
-        let of = |a: &Coordinates, b: &Coordinates| {
-            let factor = IBig::from(b.denominator.clone());
-            a.numerators.iter().map(move |n| n * &factor).collect::<Vec<_>>()
-        };
-        Coordinates::new([of(x, y), of(y, x)].concat(), &x.denominator * &y.denominator)
+        let halves = [scaled(&x.numerators, &y.denominator), scaled(&y.numerators, &x.denominator)];
+        Coordinates::new(halves.concat(), &x.denominator * &y.denominator)
     }
 
     pub(super) fn plus(&self, other: &Coordinates) -> Coordinates {
@@ -117,19 +121,9 @@ impl Coordinates {
         }
         let common = (&self.denominator).gcd(&other.denominator);
         let (own, others) = (&self.denominator / &common, &other.denominator / &common);
-        let scaled = |a: &[IBig], factor: &UBig| {
-            let factor = IBig::from(factor.clone());
-            a.iter().map(|n| n * &factor).collect::<Vec<_>>()
-        };
-        let mut numerators = add(&scaled(&self.numerators, &others), &scaled(&other.numerators, &own));
-        let mut denominator = own * &other.denominator;
+        let numerators = add(&scaled(&self.numerators, &others), &scaled(&other.numerators, &own));
         // A factor of the rest of either denominator divides one term of the sum alone.
-        let shared = common_factor(common, &numerators);
-        if !shared.is_one() {
-            divide(&mut numerators, &shared);
-            denominator /= shared;
-        }
-        Coordinates { numerators, denominator }
+        Coordinates::reduced(numerators, own * &other.denominator, common)
     }
 
     pub(super) fn negated(&self) -> Coordinates {
@@ -142,13 +136,9 @@ impl Coordinates {
     }
 
     pub(super) fn inverse(&self, squares: &[Vec<IBig>]) -> Option<Coordinates> {
-        let (mut numerators, denominator) = invert(squares, &self.numerators)?;
-        let factor = IBig::from(self.denominator.clone());
-        numerators.iter_mut().for_each(|n| *n *= &factor);
-        if denominator.is_negative() {
-            numerators = negate(&numerators);
-        }
-        Some(Coordinates::new(numerators, denominator.unsigned_abs()))
+        let (numerators, denominator) = invert(squares, &self.numerators)?;
+        let inverse = Coordinates::new(scaled(&numerators, &self.denominator), denominator.clone().unsigned_abs());
+        Some(if denominator.is_negative() { inverse.negated() } else { inverse })
     }
 }
 
@@ -164,9 +154,9 @@ fn common_factor(number: UBig, numerators: &[IBig]) -> UBig {
     common
 }
 
-fn divide(numerators: &mut [IBig], factor: &UBig) {
+fn scaled(a: &[IBig], factor: &UBig) -> Vec<IBig> {
     let factor = IBig::from(factor.clone());
-    numerators.iter_mut().filter(|n| !n.is_zero()).for_each(|n| *n /= &factor);
+    a.iter().map(|n| n * &factor).collect()
 }
 
 fn is_zero(a: &[IBig]) -> bool {
@@ -352,8 +342,7 @@ impl Tower {
                         Root::Nested(inner) => tower.constant(inner)?,
                     };
                     let Coordinates { numerators, denominator } = square.coordinates;
-                    let factor = IBig::from(denominator.clone());
-                    squares[level] = numerators[..1 << level].iter().map(|n| n * &factor).collect();
+                    squares[level] = scaled(&numerators[..1 << level], &denominator);
                     tower.renew(squares.clone());
                     let mut root = vec![IBig::ZERO; numerators.len()];
                     root[1 << level] = IBig::ONE;
