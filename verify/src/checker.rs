@@ -330,20 +330,21 @@ impl Checker {
             };
             Ok::<_, String>(Point { arithmetic: field, reference, base: samples, constants: Mutex::default() })
         };
+        // Points in prime fields tell whether a constant divides by zero: here its number may be longer than any that is worth its time.
         let rational = |mut tower: Tower| {
             let wanted = Wanted { base: BaseParameters::Kept, pivots: false };
             let found = tower.within_limits(|tower| {
                 let mut arithmetic = Erased(tower.clone());
                 let mut numbers: Numbers<'_> = &mut arithmetic;
-                let reference = Reference::new(&mut numbers, &manipulator, &vector, wanted)?;
+                let reference = Reference::new(&mut numbers, &manipulator, &vector, wanted).ok()?;
                 let samples = base.as_ref().and_then(|_| Samples::torques(&reference));
-                Ok::<_, String>(Point { arithmetic, reference, base: samples, constants: Mutex::default() })
+                Some(Point { arithmetic, reference, base: samples, constants: Mutex::default() })
             });
-            found.transpose()
+            found.flatten()
         };
         let drawn = parallel_map(&fields, |field| match field {
             Drawn::Modular(field) => modular(field.clone()).map(|point| Some(Drawn::Modular(point))),
-            Drawn::Exact(tower) => rational(tower.clone()).map(|point| point.map(Drawn::Exact)),
+            Drawn::Exact(tower) => Ok(rational(tower.clone()).map(Drawn::Exact)),
         });
         let (mut points, mut exact) = (Vec::new(), Vec::new());
         for point in drawn {
@@ -464,17 +465,27 @@ impl Checker {
             }
         };
         let literals = program.literals.iter().zip(&chosen);
-        let exact_points = self.exact.iter().filter(|point| point.knows(&program.name)).count();
         FunctionReport {
             name: program.name.clone(),
             verdict,
             points: self.points.len(),
-            exact_points,
+            exact_points: self.exact_points(program, &chosen).count(),
             log2_odds: self.log2_odds.get(&program.name).copied().unwrap_or(0.0),
             literals: literals.map(|(l, value)| Exact { literal: l.text.clone(), value: value.clone() }).collect(),
             bound: None,
             unfit: None,
         }
+    }
+
+    /// The rational points at which a function and all its constants have values.
+    fn exact_points<'a>(
+        &'a self,
+        program: &'a Program,
+        literals: &'a [Formula],
+    ) -> impl Iterator<Item = (usize, &'a Point<Erased<Tower>>)> {
+        let nominal = self.base.as_ref().filter(|_| program.name == BASE_REGRESSOR).map_or(&[][..], |base| &base.nominal);
+        let has_values = |point: &Point<_>| point.literals_of(program, literals).is_some() && point.literals(nominal).is_some();
+        self.exact.iter().enumerate().filter(move |(_, point)| point.knows(&program.name) && has_values(point))
     }
 
     /// Where several constants round to the same literal, the choice that equals the equations; else the first.
@@ -496,7 +507,7 @@ impl Checker {
                 .difference(program, literals, base)
                 .map(|(entry, how)| (entry, format!("{how} at point {} modulo {}", i + 1, point.arithmetic.prime())))
         });
-        let exact = self.exact.iter().enumerate().filter_map(|(i, point)| {
+        let exact = self.exact_points(program, literals).filter_map(|(i, point)| {
             point.difference(program, literals, base).map(|(entry, how)| (entry, format!("{how} at rational point {}", i + 1)))
         });
         let modular = modular.filter(|_| Check::Modular.is_made());
@@ -512,7 +523,7 @@ impl Checker {
             Some((entry, format!("{why}, at point {} modulo {}", i + 1, point.arithmetic.prime())))
         });
         let exact = || {
-            self.exact.iter().enumerate().find_map(|(i, point)| {
+            self.exact_points(program, literals).find_map(|(i, point)| {
                 let (entry, why) = point.base_difference(program, literals, base)?;
                 Some((entry, format!("{why}, at rational point {}", i + 1)))
             })
