@@ -31,6 +31,27 @@ fn arms_with_numbers_of_real_files_have_an_answer() {
     answered(0..2, (2, 2), Before::Mobile);
 }
 
+/// A link whose origin lies next to the axis before it, and not on it: its torque comes from a lever arm of micrometres, whose digits no sum with
+/// a longer one may take.
+#[test]
+fn short_lever_arms_keep_their_digits() {
+    for (dust, lever, turn) in [("1.7e-06", "0.132", "1.33"), ("-3.3e-09", "-0.4", "0.2"), ("1e-05", "0.25", "2.214")] {
+        let text = format!(
+            "name: short\nconvention: urdf\ngravity: [0, 0, -9.81]\njoints:\n  \
+             - {{name: yaw, type: revolute, axis: [0, 0, 1], link: {{mass: 30, inertia: {{xx: 1, yy: 1, zz: 1}}}}}}\n  \
+             - {{name: shoulder, type: revolute, origin: {{xyz: [0, {dust}, -0.3], rpy: [-1.5708, 1.5708, {turn}]}}, axis: [0, 0, -1],\n     \
+                link: {{mass: 1, inertia: {{xx: 0.1, yy: 0.1, zz: 0.1}}}}}}\n  \
+             - {{name: elbow, type: revolute, origin: {{xyz: [-3.0e-06, {dust}, {lever}], rpy: [pi/2, 3.141593, -pi/3]}}, axis: [0, 0, 1],\n     \
+                link: {{mass: 8, com: [0, -0.47, 0], inertia: {{xx: 0.1, yy: 0.1, zz: 0.1}}}}}}\n"
+        );
+        let source = Source::new("robot.yaml", text);
+        let generated = armgen_codegen::generate(&source, &Options::default()).0.expect("a module");
+        let claims = Claims::from_numbers(&generated.constants).expect("short formulas");
+        let report = verify_with(&source, &generated.module, claims, Effort { points: 2, exact_points: 1, seed: 1 });
+        assert!(report.passed(), "{}\n{}", report.first_fault().unwrap_or_default(), source.text());
+    }
+}
+
 /// Forty arms, on the ground, on a rail and on a mobile base, every third in single precision. `ARMGEN_FIRST_ARM` is the first seed.
 #[test]
 #[ignore = "wide"]

@@ -14,7 +14,8 @@
 //! ```
 //!
 //! Where x_i would need another root than one of an integer, and where the foot is further away than the arm is long (nearly parallel
-//! lines), the frame stays with the link: values are the same, the equations have more terms.
+//! lines), the frame stays with the link: values are the same, the equations have more terms. So does the origin where the link lies next to its
+//! parent's axis, but not on it: its short lever arm would be the sum of two longer ones, and lose its digits.
 
 use std::cmp::Ordering;
 
@@ -43,7 +44,9 @@ pub(super) fn lay(joints: &mut [Joint], ends: &[(usize, &Pose)], anywhere: bool,
                 let before = joints[i].parent.map(|parent| &frames[parent.index()]);
                 let next = joints[i + 1..].iter().find(|joint| joint.parent.is_some_and(|parent| parent.index() == i));
                 let end = ends.iter().find(|(link, _)| *link == i).map_or(&bare, |(_, tool)| tool);
-                frame(&joints[i], before, next, end, reach, parameters)
+                let turns = joints[i].parent.is_some_and(|parent| joints[parent.index()].kind == JointKind::Revolute);
+                let is_lost = |distance, lever| turns && is_lost(distance, lever, joints.len());
+                frame(&joints[i], before, next, end, (reach, &is_lost), parameters)
             }
             false => Placement::identity(),
         };
@@ -74,6 +77,13 @@ fn value(polynomial: &Polynomial, parameters: &[Parameter]) -> f64 {
     polynomial.evaluate(&|id| parameters[id.0 as usize].nominal.clone()).to_f64()
 }
 
+/// Whether a distance is lost beside a longer lever arm, in a sum with it: exporters write 1e-6 m for 0.
+///
+/// Of n joints text may lose a factor of 2^(4 + n), by the checker's rule of rounding. A distance of exactly 0 leaves no term behind.
+fn is_lost(distance: f64, lever: f64, joints: usize) -> bool {
+    distance > 0.0 && lever > (4.0 + joints as f64).exp2() * distance
+}
+
 /// A joint frame in the frame in which the row has its axis. `before`: that of the parent, likewise; `next`: its first child; `end`: the frame at
 /// the end of the chain, if it carries none.
 fn frame(
@@ -81,7 +91,7 @@ fn frame(
     before: Option<&Placement>,
     next: Option<&Joint>,
     end: &Pose,
-    reach: f64,
+    (reach, is_lost): (f64, &dyn Fn(f64, f64) -> bool),
     parameters: &[Parameter],
 ) -> Placement {
     let u = &joint.row.axis;
@@ -130,7 +140,17 @@ fn frame(
     } else {
         foot(p, &v, &n).unwrap_or_else(|| of_before.clone())
     };
-    let fits = |s: &Polynomial| value(s, parameters).abs() <= reach && s.terms().all(|(_, c)| c.terms().count() <= MAX_TERMS);
+    // How far 0 lies from the parent's axis, and a point of this axis for each metre of its own.
+    let length = |vector: [f64; 3]| vector.iter().map(|x| x * x).sum::<f64>().sqrt();
+    let (distance, slope) = before.as_ref().map_or((0.0, 0.0), |frame| {
+        let z = column(frame, 2);
+        let lever = cross_polynomial(&frame.translation, &z).each_ref().map(|x| value(x, parameters));
+        (length(lever), length(cross(&z, u).each_ref().map(Number::to_f64)))
+    });
+    let fits = |s: &Polynomial| {
+        let size = value(s, parameters).abs();
+        size <= reach && !is_lost(distance, size * slope) && s.terms().all(|(_, c)| c.terms().count() <= MAX_TERMS)
+    };
     let along = [along, of_before].into_iter().find(fits).unwrap_or_default();
     let laid = about_axis(u, &x, &along);
     if laid.is_multiplied_out() && laid.inverse().is_multiplied_out() {
@@ -204,12 +224,17 @@ fn any_perpendicular(u: &[Number; 3]) -> [Number; 3] {
     [&Number::one() - &(&factor * &u[0]), -&(&factor * &u[1]), -&(&u[0] * &sign)]
 }
 
-/// The foot, on the line through 0 along u, of its common normal with the line through p along v, where n = u × v: (p × v)·n / n·n.
-fn foot(p: &[Polynomial; 3], v: &[Number; 3], n: &[Number; 3]) -> Option<Polynomial> {
-    let lever: [Polynomial; 3] = std::array::from_fn(|i| {
+/// p × v
+fn cross_polynomial(p: &[Polynomial; 3], v: &[Number; 3]) -> [Polynomial; 3] {
+    std::array::from_fn(|i| {
         let (j, k) = ((i + 1) % 3, (i + 2) % 3);
         &(&p[j] * &Polynomial::from(v[k].clone())) - &(&p[k] * &Polynomial::from(v[j].clone()))
-    });
+    })
+}
+
+/// The foot, on the line through 0 along u, of its common normal with the line through p along v, where n = u × v: (p × v)·n / n·n.
+fn foot(p: &[Polynomial; 3], v: &[Number; 3], n: &[Number; 3]) -> Option<Polynomial> {
+    let lever = cross_polynomial(p, v);
     let given: Vec<usize> = (0..3).filter(|&k| !is_zero(&n[k])).collect();
     let (above, below) = match given[..] {
         [only] => (lever[only].clone(), n[only].clone()),
