@@ -38,7 +38,8 @@ impl Arc {
     pub(super) fn new([a, via, b]: [Vector3<f64>; 3]) -> Option<Arc> {
         let (u, w) = (via - a, b - a);
         let normal = u.cross(&w);
-        if !(normal.norm() > STRAIGHT * u.norm() * w.norm()) {
+        let is_bent = normal.norm() > STRAIGHT * u.norm() * w.norm();
+        if !is_bent {
             return None;
         }
         let centre = a + (w * u.norm_squared() - u * w.norm_squared()).cross(&normal) / (2.0 * normal.norm_squared());
