@@ -1,7 +1,7 @@
 //! Times of `armgen_runtime::timing`: `cargo bench --bench timing`.
 //!
 //! A random path of five points: coefficients and all solves to a gap of 0.1 %, and a sample of the governor at 1 kHz. The runtime's tests
-//! wrote the arms by hand. A sample counts as the mean of a run, the least of 15 runs, and as the longest of a run.
+//! wrote the arms by hand. Of 15 runs with the same samples count the least mean, and the longest of all samples, each by its least time.
 
 #[allow(dead_code, missing_docs, unreachable_pub)]
 #[path = "../../runtime/tests/common/chain.rs"]
@@ -59,32 +59,34 @@ enum Lead {
 /// The mean and the longest time of a sample, s.
 fn governed<const N: usize>(timing: &Timing<'_, f64, N>, lead: Lead) -> (f64, f64) {
     let mut storage = vec![[0.0; 2]; timing.segments()];
-    let (mut mean, mut longest) = (f64::INFINITY, f64::INFINITY);
+    let (mut mean, mut least) = (f64::INFINITY, Vec::<f64>::new());
     for _ in 0..15 {
         let mut governor = Governor::new(timing, &mut storage).expect("an interval for each segment");
-        let (mut next, mut command, mut most, mut samples) = (random(3), Command::Override(1.0), 0.0f64, 0u32);
+        let (mut next, mut command) = (random(3), Command::Override(1.0));
         let begin = Instant::now();
-        loop {
+        for sample in 0..100_000 {
             command = match lead {
                 Lead::Full => Command::Override(1.0),
                 Lead::Half => Command::Override(0.5),
-                Lead::Anyhow if samples % 50 != 0 => command,
+                Lead::Anyhow if sample % 50 != 0 => command,
                 Lead::Anyhow if next() < 0.4 => Command::Stop,
                 Lead::Anyhow => Command::Override(next()),
             };
             let one = Instant::now();
             let at = governor.advance(Duration::from_millis(1), command);
-            most = most.max(one.elapsed().as_secs_f64());
-            samples += 1;
-            if at.phase == Phase::Ended || samples > 100_000 {
+            let time = one.elapsed().as_secs_f64();
+            // A long one is often the machine's: in another run it is not.
+            match least.get_mut(sample) {
+                Some(least) => *least = time.min(*least),
+                None => least.push(time),
+            }
+            if at.phase == Phase::Ended {
                 break;
             }
         }
-        mean = mean.min(begin.elapsed().as_secs_f64() / f64::from(samples));
-        // The longest of a run is often the machine's; the least of these is the step's.
-        longest = longest.min(most);
+        mean = mean.min(begin.elapsed().as_secs_f64() / least.len() as f64);
     }
-    (mean, longest)
+    (mean, least.into_iter().fold(0.0, f64::max))
 }
 
 fn measure<const N: usize>(name: &str, chain: &Chain<N>, (velocity, effort): ([f64; N], [f64; N]), range: [f64; N]) {

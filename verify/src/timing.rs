@@ -174,3 +174,73 @@ fn path_is_smooth(file: &File) -> Result<(), String> {
     }
     Ok(())
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use serde_json::{json, Value};
+
+    /// The fault of a timing of a slide of 1 kg with this range; "" where it is proved.
+    fn fault(range: &str, timing: &Value) -> String {
+        let text = format!(
+            "name: slide\nconvention: standard\ngravity: [0, 0, 0]\njoints:\n  - {{name: slide, type: prismatic, a: 0, alpha: 0, d: 0, \
+             theta: 0, limits: {{position: {range}}}, link: {{mass: 1, com: [0, 0, 0], inertia: {{}}}}}}\n"
+        );
+        let source = armgen_description::source::Source::new("slide", &text);
+        let (manipulator, _) = armgen_codegen::validate::read(&source).0.expect("a valid arm");
+        check(&manipulator, &timing.to_string()).err().unwrap_or_default()
+    }
+
+    /// At the even speed ds = 0.9 over two pieces of 1/2; x <= 1.001 by the limit of speed.
+    fn even() -> Value {
+        json!({"joints": ["slide"], "path": {"knots": [0, 0.5, 1], "coefficients": [[[0, 1]], [[0.5, 1]]]},
+            "ends": {"speed": [0.9, 0.9]}, "limits": {"velocity": [1], "acceleration": [0.01], "effort": [[null, null]]},
+            "duration": 1.111_111_112, "lower_bound": 0.9995,
+            "grid": {"s": [0, 0.5, 1], "t": [0, 0.555_555_555_6, 1.111_111_111_2], "x": [0.81, 0.81, 0.81], "k": [0, 0]},
+            "bound": {"direction": [0, 0], "x0": [1.001, 1.001], "x2": [1.001, 1.001], "k": [0, 0],
+                "row": ["slide speed", "slide speed"], "also": []}})
+    }
+
+    #[test]
+    fn claims_without_a_proof_are_refused() {
+        let refused = |range: &str, why: &str, pairs: &[(&str, Value)]| {
+            let mut timing = even();
+            for (pointer, value) in pairs {
+                *timing.pointer_mut(pointer).expect("a value") = value.clone();
+            }
+            let found = fault(range, &timing);
+            assert!(found.contains(why) && found.is_empty() == why.is_empty(), "{why}: {found}");
+        };
+        refused("[-5, 5]", "", &[]);
+        refused("[-5, 0.7]", "may leave its range", &[]);
+        refused("[-5, 5]", "jumps at s = 0.5", &[("/path/coefficients/1/0/0", json!(0.6))]);
+        refused("[-5, 5]", "another speed", &[("/ends/speed/0", json!(0.8))]);
+        // A second barrier of a segment adds nothing.
+        let again = json!([{"segment": 1, "direction": 0, "x0": 1.001, "x2": 1.001, "k": 0, "row": "slide speed"}]);
+        refused("[-5, 5]", "proved are 0.9995", &[("/bound/also", again), ("/lower_bound", json!(1.4))]);
+        // Barriers by u <= 0.01 and u >= -0.01 from a speed at their end that the motion need not have.
+        for (direction, row, [x0, x2], at) in [
+            (1, "slide acceleration high", [0.0001, 0.0102], "the barrier at s = 0.5 needs a bound at its end"),
+            (-1, "slide acceleration low", [0.0102, 0.0001], "the barrier at s = 0.5 needs a bound at its end"),
+        ] {
+            let of = [("direction", json!(direction)), ("row", json!(row)), ("x0", json!(x0)), ("x2", json!(x2))];
+            let mut pairs: Vec<(String, Value)> = of.into_iter().map(|(key, of)| (format!("/bound/{key}/1"), of)).collect();
+            pairs.push(("/lower_bound".to_owned(), json!(5)));
+            refused("[-5, 5]", at, &pairs.iter().map(|(key, of)| (key.as_str(), of.clone())).collect::<Vec<_>>());
+        }
+        // q' = 2 s - 1 vanishes in the middle of the second segment: no barrier by u alone, though 2 x + q' u is above the limit on all of it.
+        let path = json!([[[0, -1, 1]], [[-0.25, 0, 1]]]);
+        let turning = [
+            ("/path/coefficients", path),
+            ("/limits/acceleration/0", json!(1.7)),
+            ("/grid/s/1", json!(0.3)),
+            ("/grid/t/1", json!(0.333_333_333_4)),
+            ("/path/knots/1", json!(0.3)),
+            ("/path/coefficients/1/0", json!([-0.21, -0.4, 1])),
+            ("/bound/direction/0", json!(null)),
+            ("/bound/direction/1", json!(1)),
+            ("/bound/row/1", json!("slide acceleration high")),
+        ];
+        refused("[-5, 5]", "has an inertial term that may vanish", &turning);
+    }
+}

@@ -212,11 +212,16 @@ impl Job<'_> {
         if diagnostics.has_errors() {
             return None;
         }
-        if let Err(error) = JointPath::new(pieces.clone()) {
+        let arcs = match form {
+            Form::Points { arcs, .. } => arcs.as_slice(),
+            Form::Pieces { .. } => &[],
+        };
+        // The pieces of arcs are their chords.
+        if let Some(error) = JointPath::new(pieces.clone()).err().filter(|_| arcs.iter().all(Option::is_none)) {
             diagnostics.push(faults.of_path(&pieces, &error));
             return None;
         }
-        match with_spinner("following the tip", || tip::spline(self.manipulator, tip, &curve)) {
+        match with_spinner("following the tip", || tip::spline(self.manipulator, tip, &curve, arcs)) {
             Ok(found) => Some(found),
             Err(fault) => {
                 diagnostics.push(faults.of_tip(&fault, &pieces));

@@ -244,6 +244,77 @@ fn a_joint_too_many_moves_the_least() {
     assert!(error.contains("outside-limits") && error.contains("wrist"), "{error}");
 }
 
+/// Line, half a circle and line, by closed forms; a second proof holds.
+#[test]
+fn the_tip_follows_an_arc() {
+    let path = "tip:
+  points: [[1.2, -0.4, 0], [1.2, 0.1, 0], {via: [1, 0.3, 0], to: [0.8, 0.1, 0]}, [0.8, -0.4, 0]]
+  start: [-1.2, 1.8]
+  tolerance: 1e-6
+curve: lines
+blend: 0.05
+";
+    let (_, _, json) = timed("arc", PLANAR, path, &["--gap", "0.01"], 0);
+    let s = numbers(&json["path"]["knots"]);
+    assert!((s[s.len() - 1] - 1.0 - 0.2 * std::f64::consts::PI).abs() < 1e-12, "{s:?}");
+    let (shoulder, elbow) = (pieces(&json, 0), pieces(&json, 1));
+    let (mut highest, mut on_arc) = (0.0f64, 0);
+    for ([q1, ..], [q2, ..]) in shoulder.iter().flatten().zip(elbow.iter().flatten()) {
+        let [x, y] = [q1.cos() + (q1 + q2).cos(), q1.sin() + (q1 + q2).sin()];
+        let off = if y > 0.1 { (x - 1.0).hypot(y - 0.1) - 0.2 } else { (x - 1.0).abs() - 0.2 };
+        assert!(off.abs() < 1e-6, "{x} {y}: {off:e}");
+        (highest, on_arc) = (highest.max(y), on_arc + usize::from(y > 0.1));
+    }
+    assert!((highest - 0.3).abs() < 1e-3 && on_arc > 20, "{highest} {on_arc}");
+    assert_eq!(refused("arc", PLANAR, &json), "");
+}
+
+/// The tip of an arm by its rows of DH: rotation and position, three rows of four.
+fn tip_of(rows: &[[f64; 4]], q: &[f64]) -> [[f64; 4]; 3] {
+    let mut t = [[1.0, 0.0, 0.0, 0.0], [0.0, 1.0, 0.0, 0.0], [0.0, 0.0, 1.0, 0.0]];
+    for ([a, alpha, d, theta], q) in rows.iter().zip(q) {
+        let ((st, ct), (sa, ca)) = ((q + theta).sin_cos(), alpha.sin_cos());
+        let row = [[ct, -st * ca, st * sa, a * ct], [st, ct * ca, -ct * sa, a * st], [0.0, sa, ca, *d]];
+        t = t.map(|t| [0, 1, 2, 3].map(|j| (0..3).map(|k| t[k] * row[k][j]).sum::<f64>() + if j == 3 { t[3] } else { 0.0 }));
+    }
+    t
+}
+
+/// A Panda, seven joints for six rows: on a line and a quarter of a circle the hand keeps its orientation.
+#[test]
+fn a_panda_leads_its_tip() {
+    use std::f64::consts::{FRAC_PI_2, FRAC_PI_4, PI};
+    let robot = fs::read_to_string(file("robots/panda7.yaml")).expect("a description");
+    let path = "tip:
+  points: [[0.307, 0, 0.59], [0.5, 0, 0.59], {via: [0.6060660171779821, 0.0439339828220179, 0.59], to: [0.65, 0.15, 0.59]}]
+  start: [0, -pi/4, 0, -3*pi/4, 0, pi/2, pi/4]
+  tolerance: 1e-5
+curve: lines
+limits: {velocity: [2.175, 2.175, 2.175, 2.175, 2.61, 2.61, 2.61], effort: [87, 87, 87, 87, 12, 12, 12]}
+";
+    let (text, _, json) = timed("panda", &robot, path, &[], 0);
+    let [duration, bound] = ["duration", "lower_bound"].map(|key| number(&json[key]));
+    assert!(bound <= duration && duration < 1.001 * bound, "{text}");
+    let h = FRAC_PI_2;
+    let (a, d) = ([0.0, 0.0, 0.0825, 0.0825, 0.0, 0.088, 0.0], [0.333, 0.0, 0.316, 0.0, 0.384, 0.0, 0.107]);
+    let (alpha, theta) = ([-h, h, h, h, -h, h, 0.0], [0.0, 0.0, 0.0, PI, 0.0, PI, 0.0]);
+    let rows: Vec<[f64; 4]> = (0..7).map(|k| [a[k], alpha[k], d[k], theta[k]]).collect();
+    let joints: Vec<Vec<[[f64; 3]; 3]>> = (0..7).map(|joint| pieces(&json, joint)).collect();
+    let start = tip_of(&rows, &[0.0, -FRAC_PI_4, 0.0, -3.0 * FRAC_PI_4, 0.0, FRAC_PI_2, FRAC_PI_4]);
+    for piece in 0..joints[0].len() {
+        for place in 0..3 {
+            let q: Vec<f64> = joints.iter().map(|of| of[piece][place][0]).collect();
+            let tip = tip_of(&rows, &q);
+            let (x, y) = (tip[0][3], tip[1][3]);
+            let off = if x > 0.5 { (x - 0.5).hypot(y - 0.15) - 0.15 } else { y };
+            assert!(off.hypot(tip[2][3] - 0.59) < 1e-5, "{tip:?}");
+            for (row, start) in tip.iter().zip(&start) {
+                assert!(row.iter().zip(start).take(3).all(|(a, b)| (a - b).abs() < 1e-5), "{tip:?}");
+            }
+        }
+    }
+}
+
 #[test]
 fn through_does_not_swing_beyond_its_points() {
     let points = "points: [[0, 0], [0.1, 1], [1, 1.1], [1.1, 1.2], [1.2, 3]]\n";

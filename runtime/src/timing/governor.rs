@@ -48,9 +48,10 @@ pub struct Governed<T, const N: usize> {
 
 /// Leads a timed motion: each command becomes a motion on the same path that keeps the limits of the timing on all of every segment.
 ///
-/// At the start of each segment, and where the command changes, the rows of the limits give the interval of x = ds² at the segment's end.
-/// It is cut by the interval from which the end of the path can be reached. An override takes the value nearest to r² x of the timed motion,
-/// a stop the least. So speeds change as fast as torques and accelerations allow, and each later command finds a motion.
+/// At the start of each segment, and where the command changes and the segment goes on for a period, the rows of the limits give the
+/// interval of x = ds² at the segment's end. It is cut by the interval from which the end of the path can be reached. An override takes the
+/// value nearest to r² x of the timed motion, a stop the least. So speeds change as fast as torques and accelerations allow, and each later
+/// command finds a motion.
 #[derive(Clone, Debug)]
 pub struct Governor<'a, T, const N: usize> {
     timing: Timing<'a, T, N>,
@@ -68,6 +69,8 @@ pub struct Governor<'a, T, const N: usize> {
     time: T,
     /// The rows that bounded the last choice.
     first: [Option<usize>; 2],
+    /// The place of the last choice among the candidates, of a slower and of a faster one.
+    choice: [usize; 2],
 }
 
 /// The rows of a segment for one k, and what they assume.
@@ -108,6 +111,7 @@ impl<'a, T: RealField + Copy, const N: usize> Governor<'a, T, N> {
             duration: T::zero(),
             time: T::zero(),
             first: [None; 2],
+            choice: [1; 2],
         };
         if first.inner.law.x0 > T::zero() {
             governor.command = Command::Override(T::one());
@@ -138,11 +142,11 @@ impl<'a, T: RealField + Copy, const N: usize> Governor<'a, T, N> {
 
     /// The motion a time `period` later, under a command.
     pub fn advance(&mut self, period: Duration, command: Command<T>) -> Governed<T, N> {
+        let mut left = seconds::<T>(period);
         if command != self.command {
             self.command = command;
-            self.change();
+            self.change(left);
         }
-        let mut left = seconds::<T>(period);
         // Each round but the last one leaves a segment.
         for _ in 0..=self.timing.segments() {
             if matches!(self.phase, Phase::Held | Phase::Ended) {
@@ -189,14 +193,16 @@ impl<'a, T: RealField + Copy, const N: usize> Governor<'a, T, N> {
         Progress { s: start + s, ds, dds }
     }
 
-    /// A new command: the rest of the segment is a segment.
-    fn change(&mut self) {
+    /// A new command: the rest of the segment is a segment. One that ends before the next sample, `period` later, is left as it is, so that
+    /// a sample chooses once where others do.
+    fn change(&mut self, period: T) {
         let (zero, one) = (T::zero(), T::one());
         match self.phase {
             Phase::Held if self.wants_to_move() => {
                 self.plan(zero, self.from, None);
             }
             Phase::Held | Phase::Ended => {}
+            Phase::Moving | Phase::GoingOn if self.time + period >= self.duration => {}
             Phase::Moving | Phase::GoingOn => {
                 let (s, ..) = self.law.at(self.time);
                 let t = s / self.law.length;
@@ -278,14 +284,20 @@ impl<'a, T: RealField + Copy, const N: usize> Governor<'a, T, N> {
             (false, false) => one,
         };
         let others = Candidates::new(&self.timing, whole);
-        let others = (0..ROWS).filter_map(|i| others.rows(i, Some(scale)));
-        let others = others.map(|rows| Rows { k: rows.k * width * width, ..rows });
+        let candidate = |index: usize| match index.checked_sub(1) {
+            Some(index) => others.rows(index, Some(scale)).map(|rows| Rows { k: rows.k * width * width, ..rows }),
+            None => current,
+        };
         let (limits, friction, next) = (&self.timing.limits, &self.timing.friction, self.next(self.segment));
         let mut trial = Trial::new(part, limits, friction, x, self.first);
-        let mut best: Option<(T, Law<T>, Rows<T>)> = None;
-        for rows in current.into_iter().chain(others) {
-            let off = |x2: T| (x2 - target).abs();
-            let is_nearer = |x2: T| best.as_ref().is_none_or(|(least, ..)| off(x2) < *least);
+        let off = |x2: T| (x2 - target).abs();
+        let mut best: Option<(T, usize, Law<T>, Rows<T>)> = None;
+        // Those of the last choice first: the trials of others that come no nearer end early.
+        let end = usize::from(target > x);
+        let last = self.choice.get(end).copied().unwrap_or(0);
+        for index in core::iter::once(last).chain((0..=ROWS).filter(|index| *index != last)) {
+            let Some(rows) = candidate(index) else { continue };
+            let is_nearer = |x2: T| best.as_ref().is_none_or(|(least, at, ..)| (off(x2), index) < (*least, *at));
             let Some(x2) = trial.nearest(rows.k, &rows.assumed, next, target, is_nearer) else { continue };
             let mut law = Law { length: part.length, x0: x, k: rows.k, x2 };
             if !law.is_passed() {
@@ -294,7 +306,7 @@ impl<'a, T: RealField + Copy, const N: usize> Governor<'a, T, N> {
                 law.x2 = largest.unwrap_or(x2);
             }
             if law.is_passed() && is_nearer(law.x2) {
-                best = Some((off(law.x2), law, rows));
+                best = Some((off(law.x2), index, law, rows));
             }
             // Nothing is nearer: at the speed of the timed motion its own rows are the only ones.
             if best.as_ref().is_some_and(|(off, ..)| *off == zero) {
@@ -302,7 +314,10 @@ impl<'a, T: RealField + Copy, const N: usize> Governor<'a, T, N> {
             }
         }
         self.first = trial.first;
-        let Some((_, law, rows)) = best else { return false };
+        let Some((_, at, law, rows)) = best else { return false };
+        if let Some(choice) = self.choice.get_mut(end) {
+            *choice = at;
+        }
         self.go(from, law, rows, phase);
         true
     }

@@ -177,6 +177,17 @@ impl<T: RealField + Copy> Interval<T> {
         Self { low: (-lit::<T>(1e30), T::zero()), high: (lit(1e30), T::zero()), alone: [T::zero(), lit(1e30)] }
     }
 
+    /// What [`others`] leave, without their slopes.
+    pub(super) fn within(h: T, k: T, assumed: &Assumed<T>, next: [T; 2], x0: T) -> Self {
+        let two = lit::<T>(2.0);
+        let ([least, most], half) = (assumed.x, lit::<T>(0.5));
+        let g = half / h;
+        let room = assumed.u - (k / h).abs();
+        let high = next[1].min(most).min(((most - k) - half * x0) * two).min((room + g * x0) / g);
+        let low = next[0].max(least).max(((least - k) - half * x0) * two).max((g * x0 - room) / g);
+        Self { low: (low, T::zero()), high: (high, T::zero()), ..Self::new() }
+    }
+
     /// Takes what a plane leaves; which end of the interval it moves. It divides only where it moves one.
     pub(super) fn cut(&mut self, plane: &HalfPlane<T>, x0: T) -> Option<usize> {
         let zero = T::zero();

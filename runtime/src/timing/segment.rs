@@ -148,18 +148,13 @@ impl<T: RealField + Copy, const N: usize> Segment<T, N> {
     /// The part from the fraction `from` to the end (de Casteljau).
     pub(super) fn part(&self, from: T) -> Self {
         let rest = T::one() - from;
-        let part = |[a, b, c]: Quadratic<T>| {
+        let mut part = Self { start: self.start + self.length * from, length: self.length * rest, ..*self };
+        for of in part.torques.iter_mut().chain(&mut part.rates).flatten() {
+            let [a, b, c] = of.quadratic;
             let (left, right) = (a * rest + b * from, b * rest + c * from);
-            [left * rest + right * from, right, c]
-        };
-        let columns = |all: [[Column<T>; N]; 3]| all.map(|of| of.map(|c| Column { quadratic: part(c.quadratic), ..c }));
-        Self {
-            start: self.start + self.length * from,
-            length: self.length * rest,
-            torques: columns(self.torques),
-            rates: columns(self.rates),
-            ..*self
+            of.quadratic = [left * rest + right * from, right, c];
         }
+        part
     }
 
     /// The first joint that no torque within its limits holds at rest at an end of the segment, with the torque and the limit.

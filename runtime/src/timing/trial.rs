@@ -3,7 +3,7 @@
 //! With X2 known, x and u lie in short intervals, and so does every row. A row that these intervals keep is no bound of X2 there. So rows
 //! are formed only where the intervals do not keep them, and the X2 nearest to the wish within all formed rows is that within all rows.
 
-use super::inner::{of_row, others, HalfPlane, Interval};
+use super::inner::{of_row, HalfPlane, Interval};
 use super::limits::Limits;
 use super::model::JointFriction;
 use super::row::{Form, Quadratic, Window};
@@ -107,6 +107,7 @@ pub(super) struct Trial<'a, T, const N: usize> {
     window: Window<T>,
     /// What the assumption adds to the torque of each joint: errors, and friction over dq².
     assumption: [Spread<T>; N],
+    is_spread: bool,
     /// The rows that were formed for the last assumption: `count` of them.
     formed: [[Option<Formed<T>>; 5]; N],
     count: usize,
@@ -142,6 +143,7 @@ impl<'a, T: RealField + Copy, const N: usize> Trial<'a, T, N> {
             assumed,
             window: Window::new(assumed.x, assumed.touch),
             assumption: [zero; N],
+            is_spread: false,
             formed: [[None; 5]; N],
             count: 0,
             first,
@@ -149,7 +151,6 @@ impl<'a, T: RealField + Copy, const N: usize> Trial<'a, T, N> {
         for (joint, (to, friction)) in trial.joints.iter_mut().zip(friction).enumerate() {
             *to = functions(segment, friction, joint).unwrap_or(none);
         }
-        trial.assume(&assumed);
         trial
     }
 
@@ -158,6 +159,12 @@ impl<'a, T: RealField + Copy, const N: usize> Trial<'a, T, N> {
         self.assumed = *assumed;
         self.window = Window::new(assumed.x, assumed.touch);
         self.count = 0;
+        self.is_spread = false;
+    }
+
+    /// What the assumption adds to torques: most trials end before it is asked for.
+    fn spread(&mut self) {
+        let assumed = &self.assumed;
         let (root, [inertial, ..]) = (assumed.x[1].max(T::zero()).sqrt(), &self.segment.torques);
         let rates = inertial.iter().zip(&self.segment.rates[0]);
         let joints = self.friction.iter().zip(&self.joints);
@@ -168,6 +175,7 @@ impl<'a, T: RealField + Copy, const N: usize> Trial<'a, T, N> {
                 *to = to.plus(curve(of, joint, assumed));
             }
         }
+        self.is_spread = true;
     }
 
     /// The X2 nearest to `target` that keeps all rows, within rounding; `None` where there is no such X2, or where it cannot serve.
@@ -192,10 +200,7 @@ impl<'a, T: RealField + Copy, const N: usize> Trial<'a, T, N> {
             let [low, high] = found.alone;
             is_inside(low, high) && found.width() >= -slack * found.size() && serves(nearest(found))
         };
-        let mut found = Interval::new();
-        for plane in others(self.segment.length, k, assumed, next) {
-            found.cut(&plane, x0);
-        }
+        let mut found = Interval::within(self.segment.length, k, assumed, next, x0);
         if !is_left(&found) {
             return None;
         }
@@ -213,14 +218,22 @@ impl<'a, T: RealField + Copy, const N: usize> Trial<'a, T, N> {
         if !is_left(&found) {
             return None;
         }
+        if !self.is_spread {
+            self.spread();
+        }
         // Each round but the last one forms a row.
         for _ in 0..=Segment::<T, N>::ROWS {
             let x2 = nearest(&found);
             let reached = self.reached(k, x2);
             let before = self.count;
             for joint in 0..N {
-                for index in self.doubtful(joint, &reached).into_iter().flatten() {
-                    if self.form(index) {
+                let doubtful = self.doubtful(joint, &reached);
+                if doubtful == [false; 5] {
+                    continue;
+                }
+                let rows = [2 * joint, 2 * joint + 1, 2 * (N + joint), 2 * (N + joint) + 1, 4 * N + joint];
+                for (index, doubtful) in rows.into_iter().zip(doubtful) {
+                    if doubtful && self.form(index) {
                         self.cut(self.count - 1, k, &mut found);
                         if !is_left(&found) {
                             return None;
@@ -270,41 +283,34 @@ impl<'a, T: RealField + Copy, const N: usize> Trial<'a, T, N> {
         Reached { u, x: Spread::between(low, high), root }
     }
 
-    /// The rows of a joint that their intervals do not keep.
-    fn doubtful(&self, joint: usize, at: &Reached<T>) -> [Option<usize>; 5] {
-        let mut rows = [None; 5];
+    /// The rows of a joint that their intervals do not keep: torque high, torque low, acceleration high, low, speed.
+    fn doubtful(&self, joint: usize, at: &Reached<T>) -> [bool; 5] {
         let Limits { velocity, acceleration, effort } = self.limits;
-        let (Some(of), Some(assumption)) = (self.joints.get(joint), self.assumption.get(joint)) else { return rows };
+        let (Some(of), Some(assumption)) = (self.joints.get(joint), self.assumption.get(joint)) else { return [false; 5] };
         let (Some(velocity), Some(acceleration), Some([low, high])) =
             (velocity.get(joint), acceleration.get(joint), effort.get(joint))
         else {
-            return rows;
+            return [false; 5];
         };
         // More than what is lost by rounding.
         let share: T = T::one() - lit::<T>(1e-6) - lit::<T>(64.0) * T::default_epsilon();
-        let [e_high, e_low, a_high, a_low, speed] = &mut rows;
         let [m, c, d] = &of.torque;
         let mut torque = m.times(&at.u).plus(c.times(&at.x)).plus(*d).plus(*assumption);
         if let Some(v) = &of.v {
             torque = torque.plus(v.times(&at.root));
         }
-        if !(torque.middle + torque.reach <= *high * share) {
-            *e_high = Some(2 * joint);
-        }
-        if !(torque.middle - torque.reach >= *low * share) {
-            *e_low = Some(2 * joint + 1);
-        }
-        if acceleration.is_finite() {
+        let is_fast = acceleration.is_finite() && {
             let error = Spread { middle: T::zero(), reach: of.rate_error * self.assumed.u };
             let all = of.rate.times(&at.u).plus(of.curvature.times(&at.x)).plus(error);
-            if !(all.size() <= *acceleration * share) {
-                (*a_high, *a_low) = (Some(2 * (N + joint)), Some(2 * (N + joint) + 1));
-            }
-        }
-        if !(of.square[1] * (at.x.middle + at.x.reach) <= *velocity * *velocity * share) {
-            *speed = Some(4 * N + joint);
-        }
-        rows
+            !(all.size() <= *acceleration * share)
+        };
+        [
+            !(torque.middle + torque.reach <= *high * share),
+            !(torque.middle - torque.reach >= *low * share),
+            is_fast,
+            is_fast,
+            !(of.square[1] * (at.x.middle + at.x.reach) <= *velocity * *velocity * share),
+        ]
     }
 }
 

@@ -219,6 +219,19 @@ mod tests {
         assert!(at_most_zero(&polynomial(&[1.0]), Some((&v(-1.0), &x)), None, &square(0.0, 4.0)).is_err());
         let x = polynomial(&[2.5, 1.5]);
         assert!(at_most_zero(&polynomial(&[1.0 - 1e-9]), Some((&v(-1.0), &x)), None, &square(1.0, 4.0)).is_ok());
+        // Above a chord in the middle: sqrt(x) - x/2 is 0 at both ends of x from 0 to 4, and 1/2 at x = 1.
+        let (x, halved) = (polynomial(&[2.0, 2.0]), |f: f64| polynomial(&[f - 1.0, -1.0]));
+        assert!(at_most_zero(&halved(-0.51), Some((&v(1.0), &x)), None, &square(0.0, 4.0)).is_ok());
+        assert!(at_most_zero(&halved(-0.3), Some((&v(1.0), &x)), None, &square(0.0, 4.0)).is_err());
+        // t sqrt(2 - 2 t) is -2 at t = -1, where the tangent of the root at x = 1 is above it by 1/2.
+        let (x, both) = (polynomial(&[2.0, -2.0]), polynomial(&[0.0, 1.0]));
+        assert!(at_most_zero(&polynomial(&[-2.9, -5.0]), Some((&both, &x)), None, &square(4.0, 0.0)).is_err());
+        assert!(at_most_zero(&polynomial(&[-3.1, -5.0]), Some((&both, &x)), None, &square(4.0, 0.0)).is_ok());
+        let x = polynomial(&[2.5, 1.5]);
+        // What the model of v misses: v from 0.5 to 1.5, sqrt(x) at most 2.
+        let missing = Taylor { rest: Range::both(0.5), ..v(1.0) };
+        assert!(at_most_zero(&polynomial(&[-2.9]), Some((&missing, &x)), None, &square(1.0, 4.0)).is_err());
+        assert!(at_most_zero(&polynomial(&[-3.1]), Some((&missing, &x)), None, &square(1.0, 4.0)).is_ok());
         // t sqrt(x) at t = 1 is 2, at t = -1 it is -1.
         assert!(at_most_zero(&polynomial(&[-2.0 - 1e-6]), Some((&polynomial(&[0.0, 1.0]), &x)), None, &square(1.0, 4.0)).is_ok());
         assert!(at_most_zero(&polynomial(&[-1.9]), Some((&polynomial(&[0.0, 1.0]), &x)), None, &square(1.0, 4.0)).is_err());

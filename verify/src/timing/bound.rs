@@ -293,26 +293,109 @@ mod tests {
         assert!(ends > 500, "{ends}");
     }
 
-    /// A slide with all friction along q, of which x and the barriers do not matter here.
-    fn slide(coefficients: &str, s: &str) -> Checker {
-        let text = "name: slide\nconvention: standard\ngravity: [0, 0, 0]\njoints:\n  - {name: slide, type: prismatic, a: 0, alpha: 0, d: 0, \
-                    theta: 0, friction: {viscous: 1.5, coulomb: 1, cubic: 0.4, stribeck: {torque: 2, velocity: 0.3}}, \
-                    link: {mass: 2, com: [0, 0, 0], inertia: {}}}\n";
-        let source = armgen_description::source::Source::new("slide", text);
+    const FRICTION: &str = "friction: {viscous: 1.5, coulomb: 1, cubic: 0.4, stribeck: {torque: 2, velocity: 0.3}}";
+
+    /// Slides along and across, each of these joints with its name and what it has, under gravity along the first axis.
+    fn slides(gravity: &str, joints: &[(&str, &str)], coefficients: &str, limits: &str, s: &str) -> Checker {
+        let mut text = format!("name: slides\nconvention: standard\ngravity: [0, 0, {gravity}]\njoints:\n");
+        for (name, has) in joints {
+            text += &format!("  - {{name: {name}, type: prismatic, a: 0, alpha: pi/2, d: 0, theta: 0, {has}}}\n");
+        }
+        let source = armgen_description::source::Source::new("slides", &text);
         let (manipulator, _) = armgen_codegen::validate::read(&source).0.expect("a valid arm");
+        let names: Vec<&str> = joints.iter().map(|joint| joint.0).collect();
+        // x and the barriers do not matter here.
         let file = format!(
-            r#"{{"joints": ["slide"], "path": {{"knots": [0, 1], "coefficients": [[{coefficients}]]}}, "ends": {{"speed": [0, 0]}},
-            "limits": {{"velocity": [5], "acceleration": [3], "effort": [[-10, 10]]}}, "duration": 1, "lower_bound": 1,
+            r#"{{"joints": {names:?}, "path": {{"knots": [0, 1], "coefficients": [[{coefficients}]]}}, "ends": {{"speed": [0, 0]}},
+            "limits": {{{limits}}}, "duration": 1, "lower_bound": 1,
             "grid": {{"s": {s}, "t": {s}, "x": {s}, "k": [0, 0, 0]}}, "bound": {{"direction": [null, null, null],
             "x0": [0, 0, 0], "x2": [0, 0, 0], "k": [0, 0, 0], "row": ["", "", ""], "also": []}}}}"#
         );
-        Checker::new(&manipulator, super::super::file::File::read(&file).expect("a file")).expect("a slide")
+        Checker::new(&manipulator, super::super::file::File::read(&file).expect("a file")).expect("slides")
+    }
+
+    const LIMITS: &str = r#""velocity": [5], "acceleration": [3], "effort": [[-12, 10]]"#;
+
+    /// A slide of 2 kg with this friction.
+    fn slide(friction: &str, coefficients: &str, s: &str) -> Checker {
+        let has = format!("{friction}, link: {{mass: 2, com: [0, 0, 0], inertia: {{}}}}");
+        slides("0", &[("slide", &has)], coefficients, LIMITS, s)
+    }
+
+    /// Each row is its limit by the closed form of the torque: a motor, a spring, all terms of friction, both directions, both signs of g.
+    #[test]
+    fn rows_are_the_limits_of_the_arm() {
+        let friction = FRICTION.replace("coulomb: 1", "coulomb: 1, load: 0.1, offset: 0.3");
+        let has = format!(
+            "{friction}, motor: {{ratio: 10, inertia: 0.01, viscous: 0.002}}, spring: {{stiffness: 100, rest: 0.5}}, \
+             link: {{mass: 2, com: [0, 0, 0], inertia: {{}}}}"
+        );
+        for (direction, coefficients) in [(1.0f64, "[0, 1]"), (-1.0, "[1, -1]")] {
+            let checker = slides("-9.81", &[("slide", &has)], coefficients, LIMITS, "[0, 0.25, 0.75, 1]");
+            for (i, from) in [(0, 0.0), (2, 0.75)] {
+                let of = checker.functions(i).expect("functions");
+                for t in [-1.0, 0.3, 1.0] {
+                    let s = from + 0.125 * (1.0 + t);
+                    let q = if direction > 0.0 { s } else { 1.0 - s };
+                    let (x, u, g): (f64, f64, f64) = (0.7, -1.3, 19.62 + 100.0 * (q - 0.5));
+                    let (dq, ddq) = (direction * x.sqrt(), direction * u);
+                    let dry = 1.0 + 0.1 * g.abs() + 2.0 * (-dq.abs() / 0.3).exp();
+                    let torque = 3.0 * ddq + 1.7 * dq + g + 0.3 + 0.4 * dq.powi(3) + direction * dry;
+                    for (kind, expected) in [
+                        (Kind::TorqueHigh, torque - 10.0),
+                        (Kind::TorqueLow, -12.0 - torque),
+                        (Kind::AccelerationHigh, ddq - 3.0),
+                        (Kind::AccelerationLow, -3.0 - ddq),
+                        (Kind::Speed, dq * dq - 25.0),
+                    ] {
+                        let row = checker.row(&of, 0, kind).expect("a limit");
+                        let (x, root) = (Range::of(x), Range::of(x).root().expect("a root"));
+                        let mut sum = row.m.at(t).times(Range::of(u)).plus(row.c.at(t).times(x));
+                        sum = sum.plus(row.v.at(t).times(root)).plus(row.d.at(t));
+                        if let Some(curve) = row.curve {
+                            let (over, rest) = curve.over_square(of.rate[0].at(t));
+                            sum = sum.plus(over.value(x.low)).plus(rest);
+                        }
+                        let off = (sum.low - expected).abs().max((sum.high - expected).abs());
+                        assert!(off < 1e-9, "{kind:?} {direction} at {s}: {sum:?}, not {expected}");
+                    }
+                }
+            }
+        }
+    }
+
+    /// Where a joint turns round within a segment, its dry friction has both signs, whichever has more of the segment.
+    #[test]
+    fn dry_friction_has_both_signs_where_a_joint_turns_round() {
+        let checker = slide("friction: {coulomb: 1}", "[0, -1, 1]", "[0, 0.4, 0.9, 1]");
+        let row = checker.row(&checker.functions(1).expect("functions"), 0, Kind::TorqueHigh).expect("a limit");
+        let d = row.d.at(0.9);
+        assert!(d.low <= -11.0 && d.high >= -9.0, "{d:?}");
+    }
+
+    /// The second slide has an inertial term m within ±1, of either sign: 4 x - F(v) + m u <= 4 excludes x only where all u that the first
+    /// slide has, -3 <= u <= (10 - F(v))/2 and 3, exceed that.
+    #[test]
+    fn a_row_without_a_sign_excludes_with_every_acceleration() {
+        let has = format!("{FRICTION}, link: {{mass: 1, com: [0, 0, 0], inertia: {{}}}}");
+        let limits = r#""velocity": [5, null], "acceleration": [3, null], "effort": [[-12, 10], [null, 4]]"#;
+        let checker = slides("0", &[("along", &has), ("across", &has)], "[0, 1], [0, -1, 2]", limits, "[0, 0.1, 0.2, 1]");
+        let mut functions: Vec<Functions> = (0..3).map(|i| checker.functions(i).expect("functions")).collect();
+        functions[0].torques[0][1] = Taylor { rest: Range::both(1.0), ..Taylor::constant(Range::ZERO) };
+        let friction = |v: f64| 1.5 * v + 1.0 + 0.4 * v.powi(3) + 2.0 * (-v / 0.3).exp();
+        let (mut low, mut high) = (0.5, 2.5);
+        for _ in 0..60 {
+            let middle = 0.5 * (low + high);
+            *if 4.0 * middle * middle - friction(middle) > 7.0 { &mut high } else { &mut low } = middle;
+        }
+        assert!(checker.excludes(&functions, 0, high * high * 1.001), "{high}");
+        assert!(!checker.excludes(&functions, 0, high * high * 0.999), "{high}");
     }
 
     /// 2 u + F(v) <= 10 and u >= -3 exclude all v with F(v) > 16.
     #[test]
     fn two_rows_with_curves_exclude_what_no_acceleration_keeps() {
-        let checker = slide("[0, 1]", "[0, 0.25, 0.75, 1]");
+        let checker = slide(FRICTION, "[0, 1]", "[0, 0.25, 0.75, 1]");
         let functions: Vec<Functions> = (0..3).map(|i| checker.functions(i).expect("functions")).collect();
         let friction = |v: f64| 1.5 * v + 1.0 + 0.4 * v.powi(3) + 2.0 * (-v / 0.3).exp();
         let (mut low, mut high) = (0.0, 5.0);
@@ -329,7 +412,7 @@ mod tests {
     /// q = s² - s turns round at 0.5: of the torque there nothing is known.
     #[test]
     fn nothing_is_proved_of_a_joint_that_turns_round_within_a_segment() {
-        let checker = slide("[0, -1, 1]", "[0, 0.25, 0.75, 1]");
+        let checker = slide(FRICTION, "[0, -1, 1]", "[0, 0.25, 0.75, 1]");
         for (i, known) in [true, false, true].into_iter().enumerate() {
             let of = checker.functions(i).expect("functions");
             for kind in [Kind::TorqueHigh, Kind::TorqueLow] {

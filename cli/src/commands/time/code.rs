@@ -21,6 +21,8 @@ armgen_codegen::codes! {
         Corner Error "corner",
         /// Two equal points, or a piece in which nothing moves.
         ZeroLength Error "zero-length",
+        /// An arc through three positions on a line.
+        NoCircle Error "no-circle",
         /// All joints come to rest inside the path.
         TurningBack Error "turning-back",
         /// A joint leaves its range.

@@ -1,7 +1,9 @@
 //! Curves: from points to pieces.
 
+use std::f64::consts::TAU;
+
 use armgen_runtime::timing::Piece;
-use nalgebra::SVector;
+use nalgebra::{SVector, Vector3};
 
 use super::file::{Curve, Form};
 
@@ -19,18 +21,65 @@ pub(super) enum Origin {
 /// Pieces, each with its origin.
 pub(super) type Pieces<const N: usize> = Vec<(Piece<f64, N>, Origin)>;
 
-/// Directions closer than this, rad, make no corner.
+/// Directions closer than this, rad, make no corner, and three positions no circle.
 const STRAIGHT: f64 = 1e-6;
+
+/// A circular arc of positions.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Arc {
+    centre: Vector3<f64>,
+    /// From the centre to the start, and as long in the direction of the motion there.
+    axes: [Vector3<f64>; 2],
+    angle: f64,
+}
+
+impl Arc {
+    /// From a through `via` to b; `None` where the three lie on a line.
+    pub(super) fn new([a, via, b]: [Vector3<f64>; 3]) -> Option<Arc> {
+        let (u, w) = (via - a, b - a);
+        let normal = u.cross(&w);
+        let is_bent = normal.norm() > STRAIGHT * u.norm() * w.norm();
+        if !is_bent {
+            return None;
+        }
+        let centre = a + (w * u.norm_squared() - u * w.norm_squared()).cross(&normal) / (2.0 * normal.norm_squared());
+        let (first, last) = (a - centre, b - centre);
+        let second = normal.normalize().cross(&first);
+        let angle = last.dot(&second).atan2(last.dot(&first)).rem_euclid(TAU);
+        Some(Arc { centre, axes: [first, second], angle })
+    }
+
+    /// Position, and its derivative by `share`, from 0 at the start to 1 at the end.
+    pub(super) fn at(&self, share: f64) -> [Vector3<f64>; 2] {
+        let (sine, cosine) = (self.angle * share).sin_cos();
+        let [first, second] = self.axes;
+        [self.centre + first * cosine + second * sine, (second * cosine - first * sine) * self.angle]
+    }
+}
+
+/// The derivative of a line or an arc from point i to the next by its share, at its start (0) or its end (1).
+fn way(points: [&[f64]; 2], arc: Option<&Arc>, share: f64) -> Vec<f64> {
+    let [from, to] = points;
+    let mut way: Vec<f64> = from.iter().zip(to).map(|(a, b)| b - a).collect();
+    if let Some(arc) = arc {
+        way.iter_mut().zip(&arc.at(share)[1]).for_each(|(to, slope)| *to = *slope);
+    }
+    way
+}
+
+fn norm(of: &[f64]) -> f64 {
+    of.iter().map(|x| x * x).sum::<f64>().sqrt()
+}
 
 /// The pieces of a path. Joints beyond those of the file rest.
 pub(super) fn pieces<const N: usize>(form: &Form) -> Pieces<N> {
     match form {
-        Form::Points { points, curve, blend, .. } => {
+        Form::Points { points, arcs, curve, blend, .. } => {
             let points: Vec<SVector<f64, N>> = points.iter().map(|q| point(q)).collect();
             match curve {
                 Curve::Spline => spline(&points),
                 Curve::Through => through(&points),
-                Curve::Lines => rounded(&points, *blend),
+                Curve::Lines => rounded(&points, arcs, *blend),
             }
         }
         Form::Pieces { knots, coefficients, .. } => {
@@ -49,20 +98,18 @@ pub(super) fn pieces<const N: usize>(form: &Form) -> Pieces<N> {
     }
 }
 
-/// The corners that lines through points have, and their angles, rad.
-pub(super) fn corners(points: &[Vec<f64>]) -> Vec<(usize, f64)> {
-    let difference = |a: &[f64], b: &[f64]| -> Vec<f64> { a.iter().zip(b).map(|(a, b)| b - a).collect() };
-    let dot = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>();
-    let unit = |a: Vec<f64>| -> Vec<f64> {
-        let length = dot(&a, &a).sqrt();
-        a.into_iter().map(|x| x / length).collect()
+/// The corners that lines and arcs through points have, and their angles, rad.
+pub(super) fn corners(points: &[Vec<f64>], arcs: &[Option<Arc>]) -> Vec<(usize, f64)> {
+    let unit = |i: usize, share: f64| -> Vec<f64> {
+        let way = way([&points[i], &points[i + 1]], arcs[i].as_ref(), share);
+        let length = norm(&way);
+        way.into_iter().map(|x| x / length).collect()
     };
     let mut found = Vec::new();
-    for (i, three) in points.windows(3).enumerate() {
-        let (a, b) = (unit(difference(&three[0], &three[1])), unit(difference(&three[1], &three[2])));
-        let chord = difference(&a, &b);
+    for i in 0..points.len().saturating_sub(2) {
+        let chord = way([&unit(i, 1.0), &unit(i + 1, 0.0)], None, 0.0);
         // The chord of an angle on the unit circle.
-        let angle = 2.0 * (0.5 * dot(&chord, &chord).sqrt()).min(1.0).asin();
+        let angle = 2.0 * (0.5 * norm(&chord)).min(1.0).asin();
         if angle > STRAIGHT {
             found.push((i + 1, angle));
         }
@@ -155,22 +202,21 @@ fn through<const N: usize>(points: &[SVector<f64, N>]) -> Pieces<N> {
     pieces
 }
 
-/// Lines whose corners are rounded by quintics that have q' and q'' = 0 in common with both lines.
+/// Lines and arcs; corners of two lines are rounded by quintics that have q' and q'' = 0 in common with both.
 ///
+/// An arc is a piece from its start to its end of the length of the arc: whoever follows it replaces the position ([`Arc::at`]).
 /// A corner at p between unit directions a and b begins d before p and ends d after it, and is 2 d long in s. Its control points lie at
 /// -1, -0.6, -0.2 times d a and 0.2, 0.6, 1 times d b from p, so it passes p at the distance 3/16 d |b - a|.
-fn rounded<const N: usize>(points: &[SVector<f64, N>], blend: Option<f64>) -> Pieces<N> {
-    let Some(blend) = blend else { return lines(points) };
+fn rounded<const N: usize>(points: &[SVector<f64, N>], arcs: &[Option<Arc>], blend: Option<f64>) -> Pieces<N> {
     let n = points.len() - 1;
-    let length: Vec<f64> = points.windows(2).map(|pair| (pair[1] - pair[0]).norm()).collect();
+    let ways = points.windows(2).zip(arcs).map(|(pair, arc)| way([pair[0].as_slice(), pair[1].as_slice()], arc.as_ref(), 0.0));
+    let length: Vec<f64> = ways.map(|way| norm(&way)).collect();
     let direction: Vec<SVector<f64, N>> =
         points.windows(2).zip(&length).map(|(pair, length)| (pair[1] - pair[0]) / *length).collect();
     // How much of the lines the corner at each point takes.
     let cut: Vec<f64> = (0..=n)
         .map(|i| {
-            if i == 0 || i == n {
-                return 0.0;
-            }
+            let Some(blend) = blend.filter(|_| i > 0 && i < n && arcs[i - 1].is_none() && arcs[i].is_none()) else { return 0.0 };
             let turn = (direction[i] - direction[i - 1]).norm();
             if turn <= STRAIGHT {
                 return 0.0;

@@ -100,12 +100,18 @@ impl Faults<'_> {
         Diagnostic::new(code, span, format!("{place}: {}", reason.as_ref()), label, help)
     }
 
-    /// Every corner of lines without a blend.
+    /// Every corner of lines without a blend, and of arcs.
     pub(super) fn of_corners(&self, diagnostics: &mut Diagnostics) {
-        let Form::Points { points, places, curve: Curve::Lines, blend: None } = self.form else { return };
-        for (i, angle) in corners(points) {
+        let Form::Points { points, arcs, places, curve: Curve::Lines, blend } = self.form else { return };
+        for (i, angle) in corners(points, arcs) {
             let message = format!("point {}: the path has a corner of {} deg", i + 1, short(angle.to_degrees()));
-            let help = "round it, `blend: 0.05` (rad or m from the corner), or end the path here and time the rest by itself";
+            let help = match (arcs[i - 1].is_some() || arcs[i].is_some(), blend) {
+                (true, _) => "move `via` so that the arc begins and ends along its neighbours, or end the path here",
+                (false, None) => {
+                    "round it, `blend: 0.05` (rad or m from the corner), or end the path here and time the rest by itself"
+                }
+                (false, Some(_)) => continue,
+            };
             diagnostics.push(Diagnostic::new(Code::Corner, places[i].span, message, "the direction changes", help));
         }
     }

@@ -8,8 +8,10 @@ use armgen_codegen::exact::Number;
 use armgen_codegen::manipulator::{self, Manipulator};
 use armgen_codegen::source::{Source, Span};
 use armgen_codegen::suggest::did_you_mean;
+use nalgebra::Vector3;
 
 use super::code::Code;
+use super::curve::Arc;
 
 /// How a path runs through its points.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -26,8 +28,8 @@ pub(super) enum Curve {
 /// The form of a path.
 #[derive(Clone, Debug)]
 pub(super) enum Form {
-    /// Points, a list of joints for each.
-    Points { points: Vec<Vec<f64>>, places: Vec<Place>, curve: Curve, blend: Option<f64> },
+    /// Points, a list of joints for each. `arcs`: between each point and the next a line, or an arc of the tip.
+    Points { points: Vec<Vec<f64>>, arcs: Vec<Option<Arc>>, places: Vec<Place>, curve: Curve, blend: Option<f64> },
     /// Polynomials, `[piece][joint][power]`, powers of s - knot, lowest first.
     Pieces { knots: Vec<f64>, coefficients: Vec<Vec<Vec<f64>>>, places: Vec<Place> },
 }
@@ -98,6 +100,7 @@ const TIP: [Key; 3] = [
     required("start", "start: [0, 0.5]"),
     optional("tolerance"),
 ];
+const ARC: [Key; 2] = [required("via", "via: [0.5, 0.1, 0.3]"), required("to", "to: [0.5, 0.2, 0.3]")];
 /// Of the tip, m and rad.
 const TOLERANCE: f64 = 1e-4;
 const LIMITS: [Key; 3] = [optional("velocity"), optional("acceleration"), optional("effort")];
@@ -257,12 +260,17 @@ impl Reading<'_> {
             Kind::List(items) if items.len() == 6 => 6,
             _ => 3,
         };
-        let lengths: Vec<usize> = list.iter().map(length).collect();
-        let (mut points, mut places) = (Vec::new(), Vec::new());
+        let (mut points, mut places, mut vias) = (Vec::new(), Vec::new(), Vec::new());
         let mut complete = true;
         for (i, point) in list.iter().enumerate() {
             let name = format!("point {}", i + 1);
-            match self.numbers(point, point.span, &name, Some((lengths[i], each))) {
+            let Some((point, via)) = (if of_tip { self.arc(point, curve, i == 0) } else { Some((point, None)) }) else {
+                complete = false;
+                continue;
+            };
+            vias.push(via);
+            let length = length(point);
+            match self.numbers(point, point.span, &name, Some((length, each))) {
                 Some(mut q) if of_tip => {
                     q.resize(6, 0.0);
                     points.push(q);
@@ -283,14 +291,39 @@ impl Reading<'_> {
             self.reader.report(Shared::WrongLength, key, message, "", "add the point where the motion ends");
             return None;
         }
+        let mut arcs = vec![None; points.len() - 1];
         for i in 1..points.len() {
-            if points[i] == points[i - 1] {
+            if let Some(via) = vias[i] {
+                let position = |q: &[f64]| Vector3::new(q[0], q[1], q[2]);
+                arcs[i - 1] = Arc::new([position(&points[i - 1]), position(&via), position(&points[i])]);
+                if arcs[i - 1].is_none() {
+                    let message = format!("no circle passes point {i}, `via` and point {}", i + 1);
+                    let help = "move `via` off the line between these points, or write the point alone for a line";
+                    self.reader.report(Code::NoCircle, places[i].span, message, "they lie on a line", help);
+                }
+            } else if points[i] == points[i - 1] {
                 let message = format!("points {i} and {} are equal", i + 1);
                 let help = "leave one of them out: a pause belongs between two timings";
                 self.reader.report(Code::ZeroLength, places[i].span, message, "the same point", help);
             }
         }
-        Some(Form::Points { points, places, curve, blend })
+        Some(Form::Points { points, arcs, places, curve, blend })
+    }
+
+    /// The end of an arc, and the position that it passes; or the point itself.
+    fn arc<'n>(&mut self, point: &'n Node, curve: Curve, is_first: bool) -> Option<(&'n Node, Option<[f64; 3]>)> {
+        let Kind::Mapping(_) = &point.kind else { return Some((point, None)) };
+        let fields = self.reader.mapping(point, "an arc", point.span, &ARC)?;
+        if is_first {
+            let help = "write the point where the arc begins before it";
+            self.reader.report(Code::MissingPath, point.span, "a path begins with a point, not with an arc", "", help);
+        }
+        if curve != Curve::Lines {
+            self.reader.report(Code::UnknownWord, point.span, "only `curve: lines` has arcs", "", "write `curve: lines`");
+        }
+        let via = fields.get("via").and_then(|(key, node)| self.numbers(node, key, "via", Some((3, "x, y, z in m"))));
+        let (_, to) = fields.get("to")?;
+        Some((to, Some(via?.try_into().ok()?)))
     }
 
     fn pieces(&mut self, node: &Node, key: Span) -> Option<Form> {

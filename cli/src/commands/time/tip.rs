@@ -13,7 +13,7 @@ use armgen_evaluate::{program, Program, Workspace};
 use armgen_runtime::timing::Piece;
 use nalgebra::{DMatrix, DVector, Matrix3, Rotation3, SVector, Vector3, Vector6};
 
-use super::curve::{Origin, Pieces};
+use super::curve::{Arc, Origin, Pieces};
 use super::file::Tip;
 
 /// Places between two nodes at which the spline is compared with the curve.
@@ -163,10 +163,14 @@ fn least(j: &DMatrix<f64>, e: &DVector<f64>) -> Option<DVector<f64>> {
 }
 
 /// The place s of a piece of the curve; `base` is the orientation that rotation vectors count from.
-fn wanted(piece: &Piece<f64, 6>, s: f64, base: &Matrix3<f64>) -> Wanted {
+fn wanted(piece: &Piece<f64, 6>, arc: Option<&Arc>, s: f64, base: &Matrix3<f64>) -> Wanted {
     let at = piece.at(s);
-    let [p, turn] = [0, 3].map(|k| Vector3::new(at.q[k], at.q[k + 1], at.q[k + 2]));
-    let [dp, d_turn] = [0, 3].map(|k| Vector3::new(at.slope[k], at.slope[k + 1], at.slope[k + 2]));
+    let [mut p, turn] = [0, 3].map(|k| Vector3::new(at.q[k], at.q[k + 1], at.q[k + 2]));
+    let [mut dp, d_turn] = [0, 3].map(|k| Vector3::new(at.slope[k], at.slope[k + 1], at.slope[k + 2]));
+    if let Some(arc) = arc {
+        let [position, slope] = arc.at((s - piece.start) / piece.length);
+        (p, dp) = (position, slope / piece.length);
+    }
     // The angular velocity of exp(turn): the left Jacobian times the derivative of turn.
     let (angle, cross) = (turn.norm(), turn.cross_matrix());
     let (first, second) = if angle < 1e-4 {
@@ -183,17 +187,22 @@ fn wanted(piece: &Piece<f64, 6>, s: f64, base: &Matrix3<f64>) -> Wanted {
 struct Way<'a> {
     arm: &'a Kinematics,
     curve: &'a Piece<f64, 6>,
+    arc: Option<&'a Arc>,
     piece: usize,
     base: Matrix3<f64>,
 }
 
 impl Way<'_> {
+    fn wanted(&self, s: f64) -> Wanted {
+        wanted(self.curve, self.arc, s, &self.base)
+    }
+
     fn fault(&self, s: f64, kind: FaultKind) -> Fault {
         Fault { s, piece: self.piece, kind }
     }
 
     fn slope(&self, s: f64, q: &DVector<f64>) -> Result<DVector<f64>, Fault> {
-        let slope = self.arm.slope(q, &wanted(self.curve, s, &self.base));
+        let slope = self.arm.slope(q, &self.wanted(s));
         slope.map_err(|(least, needed)| self.fault(s, FaultKind::Singular { least, needed }))
     }
 
@@ -213,7 +222,7 @@ impl Way<'_> {
 
     /// Joint values at `to` on the branch of q at `from`: steps that lose the branch are halved.
     fn follow(&self, from: f64, q: &DVector<f64>, to: f64, depth: u32) -> Result<DVector<f64>, Fault> {
-        let there = wanted(self.curve, to, &self.base);
+        let there = self.wanted(to);
         let guess = q + self.step(from, q, to - from)?;
         let near = |found: &DVector<f64>| (found - &guess).amax() < JUMP;
         if let Some(found) = self.arm.solve(&guess, &there).filter(near) {
@@ -230,7 +239,7 @@ impl Way<'_> {
     /// A posture that is singular because the curve leaves the reach of the arm: from q no joint values are found at `to`.
     fn judged(&self, fault: Fault, q: &DVector<f64>, to: f64) -> Fault {
         let is_singular = matches!(fault.kind, FaultKind::Singular { .. });
-        if !is_singular || self.arm.solve(q, &wanted(self.curve, to, &self.base)).is_some() {
+        if !is_singular || self.arm.solve(q, &self.wanted(to)).is_some() {
             return fault;
         }
         Fault { kind: self.unreachable(fault.s), ..fault }
@@ -238,7 +247,7 @@ impl Way<'_> {
 
     /// What is left of the curve from s on.
     fn unreachable(&self, s: f64) -> FaultKind {
-        let [here, end] = [s, self.curve.end()].map(|s| wanted(self.curve, s, &self.base));
+        let [here, end] = [s, self.curve.end()].map(|s| self.wanted(s));
         let turn = Rotation3::from_matrix_unchecked(end.r * here.r.transpose()).angle();
         FaultKind::Unreachable { off: Distance { metres: (end.p - here.p).norm(), radians: turn } }
     }
@@ -269,7 +278,7 @@ impl Way<'_> {
                 let s = from + h * place as f64 / PLACES as f64;
                 let here = piece.at(s).q;
                 let here = DVector::from_fn(self.arm.dof, |joint, _| here[joint]);
-                let off = self.arm.off(&here, &wanted(self.curve, s, &self.base));
+                let off = self.arm.off(&here, &self.wanted(s));
                 if off.metres.max(off.radians) > worst.metres.max(worst.radians) {
                     at = s;
                 }
@@ -288,6 +297,7 @@ pub(super) fn spline<const N: usize>(
     manipulator: &Manipulator,
     tip: &Tip,
     curve: &Pieces<6>,
+    arcs: &[Option<Arc>],
 ) -> Result<(Pieces<N>, Distance), Fault> {
     let arm = Kinematics::new(manipulator);
     let begin = curve.first().map_or(0.0, |(piece, _)| piece.start);
@@ -298,14 +308,18 @@ pub(super) fn spline<const N: usize>(
     let (_, base) = arm.pose(&near);
     let mut q = near.clone();
     if let Some((first, _)) = curve.first() {
-        let there = wanted(first, begin, &base);
+        let there = wanted(first, None, begin, &base);
         let off = arm.off(&near, &there);
         let found = arm.solve(&near, &there);
         q = found.ok_or(Fault { s: begin, piece: 0, kind: FaultKind::Unreachable { off } })?;
     }
     let (mut pieces, mut worst): (Pieces<N>, Distance) = (Vec::new(), Distance::default());
     for (index, (of, origin)) in curve.iter().enumerate() {
-        let way = Way { arm: &arm, curve: of, piece: index, base };
+        let arc = match origin {
+            Origin::Between(i) => arcs.get(*i).and_then(Option::as_ref),
+            _ => None,
+        };
+        let way = Way { arm: &arm, curve: of, arc, piece: index, base };
         let mut count = 2;
         let (found, off, end) = loop {
             let (found, off, at, end) = way.spline(&q, count)?;

@@ -94,6 +94,41 @@ fn faults() -> Vec<(&'static str, String, String, Vec<&'static str>, Vec<&'stati
             "",
             vec!["between points 1 and 2", "raise `tolerance`"],
         ),
+        // Of arcs.
+        (
+            "no-circle",
+            of(PLANAR, "tip: {points: [[1, 0, 0], {via: [1, 0.2, 0], to: [1, 0.5, 0]}], start: [-1, 2]}\ncurve: lines\n"),
+            "",
+            vec!["no circle passes point 1, `via` and point 2", "path.yaml:1:50"],
+        ),
+        (
+            "corner",
+            of(
+                PLANAR,
+                "tip: {points: [[1, -0.2, 0], [1, 0, 0], {via: [1.1, 0.1, 0], to: [1, 0.2, 0]}], start: [-1, 2]}\n\
+                 curve: lines\nblend: 0.05\n",
+            ),
+            "",
+            vec!["point 2: the path has a corner of 90 deg", "move `via`", "path.yaml:1:30"],
+        ),
+        (
+            "unknown-word",
+            of(PLANAR, "tip: {points: [[1, 0, 0], {via: [1.1, 0.2, 0], to: [1, 0.5, 0]}], start: [-1, 2]}\n"),
+            "",
+            vec!["only `curve: lines` has arcs", "path.yaml:1:27"],
+        ),
+        (
+            "missing-path",
+            of(PLANAR, "tip: {points: [{via: [1.1, 0.2, 0], to: [1, 0.5, 0]}, [1, 0.6, 0]], start: [-1, 2]}\ncurve: lines\n"),
+            "",
+            vec!["a path begins with a point", "path.yaml:1:16"],
+        ),
+        (
+            "wrong-length",
+            of(PLANAR, "tip: {points: [[1, 0, 0], {via: [1, 2], to: [1, 0.5, 0]}], start: [-1, 2]}\ncurve: lines\n"),
+            "",
+            vec!["via has 2 numbers, not 3", "path.yaml:1:33"],
+        ),
         // Of a description.
         (
             "smooth-friction",
