@@ -5,7 +5,7 @@
 
 use nalgebra::DVector;
 
-use super::{Equations, Gram};
+use super::{Equations, Gram, Pattern};
 
 /// Entries of a tile in a line.
 const LANES: usize = 4;
@@ -43,21 +43,34 @@ impl Sums {
     pub fn new(equations: &Equations, columns: &[usize]) -> Sums {
         let joints = equations.rows.iter().map(|row| row.joint + 1).max().unwrap_or(0);
         let mut all = vec![Gathered::default(); joints];
-        let mut filled = vec![vec![false; equations.columns]; joints];
+        let mut filled: Vec<Vec<Vec<bool>>> =
+            vec![equations.patterns.iter().map(|pattern| vec![false; pattern.places.len()]).collect(); joints];
         for (k, row) in equations.rows.iter().enumerate() {
             all[row.joint].rows.push(k);
-            filled[row.joint].iter_mut().zip(equations.row(k)).for_each(|(filled, x)| *filled |= *x != 0.0);
+            let filled = &mut filled[row.joint][equations.starts[k].0];
+            filled.iter_mut().zip(equations.row(k)).for_each(|(filled, x)| *filled |= *x != 0.0);
         }
         for (of, filled) in all.iter_mut().zip(&filled) {
-            of.columns = (0..columns.len()).filter(|&place| filled[columns[place]]).collect();
+            let patterns = || equations.patterns.iter().zip(filled);
+            let is_filled =
+                |place: usize| patterns().any(|(pattern, filled)| pattern.entry(place).is_some_and(|entry| filled[entry]));
+            of.columns = (0..columns.len()).filter(|&place| is_filled(columns[place])).collect();
             of.width = (of.columns.len() + 1).div_ceil(LANES);
             of.panels = vec![[[0.0; LANES]; BLOCK]; of.width * of.rows.len().div_ceil(BLOCK)];
-            let places: Vec<usize> = of.columns.iter().map(|&place| columns[place]).collect();
+            // Where each entry goes, by pattern.
+            let places = |pattern: &Pattern| -> Vec<(usize, usize)> {
+                let entry = |(i, &place): (usize, &usize)| Some((i, pattern.entry(columns[place])?));
+                of.columns.iter().enumerate().filter_map(entry).collect()
+            };
+            let places: Vec<Vec<(usize, usize)>> = equations.patterns.iter().map(places).collect();
+            let last = of.columns.len();
             for (rows, block) in of.rows.chunks(BLOCK).zip(of.panels.chunks_exact_mut(of.width)) {
                 for (r, &k) in rows.iter().enumerate() {
                     let row = equations.row(k);
-                    let entries = places.iter().map(|&place| row[place]).chain(std::iter::once(equations.b[k]));
-                    entries.enumerate().for_each(|(i, x)| block[i / LANES][r][i % LANES] = x);
+                    for &(i, entry) in &places[equations.starts[k].0] {
+                        block[i / LANES][r][i % LANES] = row[entry];
+                    }
+                    block[last / LANES][r][last % LANES] = equations.b[k];
                 }
             }
         }
@@ -196,7 +209,7 @@ fn add(tiles: &mut [[Lanes; LANES]], left: &[Panel], right: &[Panel]) {
 mod tests {
     use nalgebra::DVector;
 
-    use super::{Equations, Sums};
+    use super::{Equations, Pattern, Sums};
     use crate::fit::Row;
 
     /// Sums of small whole numbers are exact in any order: they equal the definition, for every class and joint.
@@ -208,19 +221,19 @@ mod tests {
             state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
             ((state >> 40) % 9) as f64 - 4.0
         };
-        let mut equations = Equations { columns, ..Equations::default() };
+        // Column 3 is 0 throughout, joint 1 has the first five alone; the other rows have two patterns.
+        let patterns = [(0..5).collect(), (0..columns).collect(), (0..columns).filter(|column| *column != 7).collect()];
+        let mut equations = Equations::new(columns, patterns.into_iter().map(Pattern::new).collect(), count, count * columns);
         for k in 0..count {
-            // Column 3 is 0 throughout, joint 1 has the first five alone.
             let joint = k % joints;
-            let is_there = |column: usize| column != 3 && (joint != 1 || column < 5);
-            equations.a.extend((0..columns).map(|column| if is_there(column) { whole() } else { 0.0 }));
-            equations.b.push(whole());
-            equations.rows.push(Row { joint, log: 0, time: k as f64, counts: true });
+            let pattern = if joint == 1 { 0 } else { 1 + k / 100 };
+            let entries = equations.push(Row { joint, log: 0, time: k as f64, counts: true }, whole(), pattern);
+            entries.iter_mut().enumerate().filter(|(column, _)| *column != 3).for_each(|(_, x)| *x = whole());
         }
         let weights: Vec<f64> = (0..count).map(|_| whole().abs()).collect();
         let chosen = [9, 0, 3, 2, 7, 10];
         let (sums, class) = (Sums::new(&equations, &chosen), |k: usize| (k / 50) % 2);
-        let at = |k: usize, place: usize| equations.row(k)[chosen[place]];
+        let at = |k: usize, place: usize| equations.at(k, chosen[place]);
         for (this, gram) in sums.grams(&weights, 2, class).iter().enumerate() {
             let sum =
                 |of: &dyn Fn(usize) -> f64| -> f64 { (0..count).filter(|&k| class(k) == this).map(|k| weights[k] * of(k)).sum() };
