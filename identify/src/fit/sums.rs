@@ -1,6 +1,6 @@
 //! Sums over rows: Gram matrices and residuals of the same equations for many weights.
 //!
-//! The rows of a joint are gathered once, without the columns that are 0 in all of them and followed by the right-hand side.
+//! The rows of a joint are gathered once, with the columns of their patterns, followed by the right-hand side.
 //! A sum goes over tiles of 4 x 4 entries, which stay in registers while a block of rows passes.
 
 use nalgebra::DVector;
@@ -20,7 +20,7 @@ type Panel = [Lanes; BLOCK];
 /// The rows of a joint.
 #[derive(Clone, Debug, Default)]
 struct Gathered {
-    /// The columns that are not 0, by their places among the columns of the sums.
+    /// The columns of their patterns, by their places among the columns of the sums.
     columns: Vec<usize>,
     /// The rows of the equations.
     rows: Vec<usize>,
@@ -43,34 +43,33 @@ impl Sums {
     pub fn new(equations: &Equations, columns: &[usize]) -> Sums {
         let joints = equations.rows.iter().map(|row| row.joint + 1).max().unwrap_or(0);
         let mut all = vec![Gathered::default(); joints];
-        let mut filled: Vec<Vec<Vec<bool>>> =
-            vec![equations.patterns.iter().map(|pattern| vec![false; pattern.places.len()]).collect(); joints];
+        let mut patterns = vec![vec![false; equations.patterns.len()]; joints];
         for (k, row) in equations.rows.iter().enumerate() {
             all[row.joint].rows.push(k);
-            let filled = &mut filled[row.joint][equations.starts[k].0];
-            filled.iter_mut().zip(equations.row(k)).for_each(|(filled, x)| *filled |= *x != 0.0);
+            patterns[row.joint][equations.starts[k].0] = true;
         }
-        for (of, filled) in all.iter_mut().zip(&filled) {
-            let patterns = || equations.patterns.iter().zip(filled);
-            let is_filled =
-                |place: usize| patterns().any(|(pattern, filled)| pattern.entry(place).is_some_and(|entry| filled[entry]));
+        for (of, is_there) in all.iter_mut().zip(&patterns) {
+            let patterns = || equations.patterns.iter().zip(is_there).filter(|(_, is_there)| **is_there);
+            let is_filled = |place: usize| patterns().any(|(pattern, _)| pattern.entry(place).is_some());
             of.columns = (0..columns.len()).filter(|&place| is_filled(columns[place])).collect();
             of.width = (of.columns.len() + 1).div_ceil(LANES);
             of.panels = vec![[[0.0; LANES]; BLOCK]; of.width * of.rows.len().div_ceil(BLOCK)];
-            // Where each entry goes, by pattern.
+            // Where entries of the first row of a block go, by pattern; those of the next are beside them.
+            let start = |i: usize| i / LANES * BLOCK * LANES + i % LANES;
             let places = |pattern: &Pattern| -> Vec<(usize, usize)> {
-                let entry = |(i, &place): (usize, &usize)| Some((i, pattern.entry(columns[place])?));
+                let entry = |(i, &place): (usize, &usize)| Some((start(i), pattern.entry(columns[place])?));
                 of.columns.iter().enumerate().filter_map(entry).collect()
             };
             let places: Vec<Vec<(usize, usize)>> = equations.patterns.iter().map(places).collect();
-            let last = of.columns.len();
+            let last = start(of.columns.len());
             for (rows, block) in of.rows.chunks(BLOCK).zip(of.panels.chunks_exact_mut(of.width)) {
+                let block = block.as_flattened_mut().as_flattened_mut();
                 for (r, &k) in rows.iter().enumerate() {
                     let row = equations.row(k);
-                    for &(i, entry) in &places[equations.starts[k].0] {
-                        block[i / LANES][r][i % LANES] = row[entry];
+                    for &(start, entry) in &places[equations.starts[k].0] {
+                        block[start + LANES * r] = row[entry];
                     }
-                    block[last / LANES][r][last % LANES] = equations.b[k];
+                    block[last + LANES * r] = equations.b[k];
                 }
             }
         }
