@@ -287,6 +287,18 @@ impl<'a> Estimate<'a> {
         gram
     }
 
+    /// The same for the active columns.
+    pub fn fit_active(&mut self) -> Gram {
+        let (equations, _) = self.equations(None);
+        self.fit(&equations)
+    }
+
+    /// The same with these terms of friction of each joint.
+    pub fn fit_terms(&mut self, terms: &[Vec<Friction>]) -> Gram {
+        self.activate(&|joint, term| terms[joint].contains(&term));
+        self.fit_active()
+    }
+
     /// Takes values of the active columns; the others are 0, or fixed.
     pub(crate) fn take(&mut self, x: &DVector<f64>) {
         self.x.fill(0.0);
