@@ -6,7 +6,7 @@ mod instruments;
 use nalgebra::{DMatrix, DVector};
 
 use crate::arm::Arm;
-use crate::fit::{covariance, solve, solve_fast, Covariance, Equations, Gram, Row, Solution, Sums};
+use crate::fit::{covariance, solve, solve_fast, Covariance, Equations, Gram, Pattern, Row, Solution, Sums};
 use crate::options::Load;
 use crate::prepare::{Friction, Piece};
 
@@ -182,10 +182,12 @@ impl<'a> Estimate<'a> {
     /// fixed are 0, but for a candidate.
     pub fn equations(&self, candidate: Option<Friction>) -> (Equations, Vec<f64>) {
         let (n, base) = (self.arm.dof(), self.arm.base.len());
-        let columns = self.columns.len();
         let rows = n * self.pieces.iter().map(|piece| piece.kept.len()).sum::<usize>();
-        let mut equations = Equations { columns, ..Equations::default() };
-        equations.a.reserve_exact(rows * columns);
+        let felt = self.felt();
+        let patterns = self.patterns(&felt);
+        let of_piece = |piece: &Piece| piece.kept.len() * (0..n).map(|j| patterns[piece.log * n + j].places.len()).sum::<usize>();
+        let entries = self.pieces.iter().map(of_piece).sum();
+        let mut equations = Equations::new(self.columns.len(), patterns, rows, entries);
         let mut known = Vec::with_capacity(rows);
         for (place, piece) in self.pieces.iter().enumerate() {
             let run = &self.runs[piece.log];
@@ -200,38 +202,59 @@ impl<'a> Estimate<'a> {
                 is_wanted(j, term).then(|| piece.friction(j, term, self.velocities[j], &self.sizes[place], self.delays[j]))
             };
             let friction: Vec<Option<Vec<f64>>> = (0..n).flat_map(|j| Friction::ALL.map(|term| column(j, term))).collect();
-            let loads = run.load.is_there.then(|| self.place(Column::Load(piece.log, 0)));
             let known_load = self.known_load(piece.log);
-            let first_friction = self.place(Column::Friction(run.session, 0, Friction::Viscous));
+            let fixed: Vec<Vec<(usize, f64)>> = (0..n)
+                .map(|j| {
+                    let pattern = &equations.patterns[piece.log * n + j];
+                    self.fixed.iter().filter_map(|&(place, value)| Some((pattern.entry(place)?, value))).collect()
+                })
+                .collect();
             for row in 0..piece.kept.len() {
                 for j in 0..n {
-                    let start = equations.a.len();
-                    equations.a.resize(start + columns, 0.0);
-                    let a = &mut equations.a[start..];
+                    let (felt, counts) = (&felt[j], piece.counts[row * n + j]);
+                    let of = Row { joint: j, log: piece.log, time: piece.time(row), counts };
+                    let a = equations.push(of, 0.0, piece.log * n + j);
                     let y = &piece.y[(row * n + j) * base..(row * n + j + 1) * base];
-                    a[..base].copy_from_slice(y);
+                    a.iter_mut().zip(felt).for_each(|(a, &place)| *a = y[place]);
+                    let mut next = felt.len();
                     let mut of_load = 0.0;
-                    if let Some(first) = loads {
+                    if run.load.is_there {
                         for k in 0..10 {
                             let entry: f64 = y.iter().zip(self.arm.load.column(k).iter()).map(|(y, l)| y * l).sum();
-                            a[first + k] = entry;
+                            a[next + k] = entry;
                             of_load += entry * known_load[k];
                         }
+                        next += 10;
                     }
                     for term in 0..6 {
-                        a[first_friction + 6 * j + term] = friction[6 * j + term].as_ref().map_or(0.0, |column| column[row]);
+                        a[next + term] = friction[6 * j + term].as_ref().map_or(0.0, |column| column[row]);
                     }
-                    let fixed: f64 = self.fixed.iter().map(|(place, value)| a[*place] * value).sum();
+                    let fixed: f64 = fixed[j].iter().map(|(entry, value)| a[*entry] * value).sum();
                     let this = piece.known[row * n + j] + of_load;
-                    equations.b.push(tau[j][row] * self.corrections[j] - this - fixed);
+                    *equations.b.last_mut().expect("the row") = tau[j][row] * self.corrections[j] - this - fixed;
                     known.push(this);
-                    let counts = piece.counts[row * n + j];
-                    equations.rows.push(Row { joint: j, log: piece.log, time: piece.time(row), counts });
                 }
             }
         }
-        self.fill_delays(&mut equations, &known, true);
         (equations, known)
+    }
+
+    /// The columns of the rows of each joint in each log, log by log: base parameters that it feels, the load of the log, its friction, gain and delay.
+    fn patterns(&self, felt: &[Vec<usize>]) -> Vec<Pattern> {
+        let pattern = |log: usize, joint: usize| {
+            let run = &self.runs[log];
+            let loads = (0..10).filter(|_| run.load.is_there).map(|k| Column::Load(log, k));
+            let friction = Friction::ALL.map(|term| Column::Friction(run.session, joint, term));
+            let others = loads.chain(friction).chain([Column::Gain(joint), Column::Delay(joint)]);
+            Pattern::new(felt[joint].iter().copied().chain(others.map(|column| self.place(column))).collect())
+        };
+        (0..self.runs.len() * self.arm.dof()).map(|k| pattern(k / self.arm.dof(), k % self.arm.dof())).collect()
+    }
+
+    /// The base parameters that each joint feels.
+    fn felt(&self) -> Vec<Vec<usize>> {
+        let feels = |j: usize, column: &usize| self.pieces.iter().any(|piece| piece.felt[j].contains(column));
+        (0..self.arm.dof()).map(|j| (0..self.arm.base.len()).filter(|column| feels(j, column)).collect()).collect()
     }
 
     /// Base parameters of the arm without load.
@@ -262,6 +285,18 @@ impl<'a> Estimate<'a> {
         let x = solve_fast(&gram);
         self.take(&x);
         gram
+    }
+
+    /// The same for the active columns.
+    pub fn fit_active(&mut self) -> Gram {
+        let (equations, _) = self.equations(None);
+        self.fit(&equations)
+    }
+
+    /// The same with these terms of friction of each joint.
+    pub fn fit_terms(&mut self, terms: &[Vec<Friction>]) -> Gram {
+        self.activate(&|joint, term| terms[joint].contains(&term));
+        self.fit_active()
     }
 
     /// Takes values of the active columns; the others are 0, or fixed.
@@ -395,17 +430,15 @@ impl<'a> Estimate<'a> {
             for (piece, sizes) in self.pieces.iter().zip(&self.sizes) {
                 column.extend(piece.friction(joint, Friction::Stribeck, log.exp(), sizes, self.delays[joint]));
             }
-            let mut small = Equations { columns: 5 * sessions, ..Equations::default() };
+            let patterns = (0..sessions).map(|session| Pattern::new((5 * session..5 * session + 5).collect())).collect();
+            let mut small = Equations::new(5 * sessions, patterns, of.len(), 5 * of.len());
             let mut weights = Vec::new();
             for (&k, stribeck) in of.iter().zip(&column) {
-                let (row, session) = (equations.row(k), self.runs[equations.rows[k].log].session);
+                let session = self.runs[equations.rows[k].log].session;
                 let first = firsts[session];
-                let cubic = if has_cubic { row[first + Friction::Cubic as usize] } else { 0.0 };
-                small.a.resize(small.a.len() + 5 * sessions, 0.0);
-                let start = small.a.len() - 5 * (sessions - session);
-                small.a[start..start + 5].copy_from_slice(&[row[first], row[first + 1], 1.0, *stribeck, cubic]);
-                small.b.push(residuals[k]);
-                small.rows.push(equations.rows[k]);
+                let cubic = if has_cubic { equations.at(k, first + Friction::Cubic as usize) } else { 0.0 };
+                let row = [equations.at(k, first), equations.at(k, first + 1), 1.0, *stribeck, cubic];
+                small.push(equations.rows[k], residuals[k], session).copy_from_slice(&row);
                 weights.push(self.weights[k]);
             }
             let gram = small.gram(&weights);
@@ -446,7 +479,7 @@ impl<'a> Estimate<'a> {
     /// The solution with intervals, for the columns that are active.
     pub fn finish(&mut self) -> (Equations, Solution, Covariance) {
         let n = self.arm.dof();
-        let (mut equations, _) = self.equations(None);
+        let (mut equations, _) = self.equations_with_delays(true);
         let mut gram = self.fit(&equations);
         // The intervals allow for delays.
         let all = self.with_delays();
@@ -504,7 +537,7 @@ impl<'a> Estimate<'a> {
             let rows = (0..extended.rows.len()).filter(|&k| equations.rows[k].joint == joint);
             for (k, difference) in rows.zip(difference).collect::<Vec<_>>() {
                 if self.runs[equations.rows[k].log].session == session {
-                    extended.a[k * extended.columns + slope] += self.x[place] * difference;
+                    *extended.at_mut(k, slope) += self.x[place] * difference;
                 }
             }
             active.extend((!active.contains(&slope)).then_some(slope));
@@ -524,16 +557,13 @@ impl<'a> Estimate<'a> {
         let n = self.arm.dof();
         self.corrections = vec![1.0; n];
         let (mut equations, known) = self.equations(None);
-        let fixed: Vec<f64> = (0..equations.b.len())
-            .map(|k| self.fixed.iter().map(|(place, value)| equations.row(k)[*place] * value).sum())
-            .collect();
+        let fixed: Vec<f64> = (0..equations.b.len()).map(equations.product(&self.fixed)).collect();
         // The torque as it is measured, and friction of given values, which is no part of the scaled torque.
         let measured: Vec<f64> = (0..equations.b.len()).map(|k| equations.b[k] + known[k]).collect();
         let is_dynamic = |column: Column| matches!(column, Column::Base(_) | Column::Load(..));
         let mut active = self.active.clone();
         active.extend((0..n).filter(|&j| !held[j]).map(|j| self.place(Column::Gain(j))));
-        let columns = equations.columns;
-        let plain: Vec<f64> = equations.a.clone();
+        let plain = equations.clone();
         let mut reciprocal = vec![1.0; n];
         let gram_x: DVector<f64> = DVector::from_fn(self.active.len(), |k, _| self.x[self.active[k]]);
         let mut x = gram_x;
@@ -543,18 +573,19 @@ impl<'a> Estimate<'a> {
         for round in 0..25 {
             for k in 0..equations.b.len() {
                 let j = equations.rows[k].joint;
-                let row = &plain[k * columns..(k + 1) * columns];
                 let (mut dynamic, mut friction) = (known[k], fixed[k]);
                 for (&place, value) in self.active.iter().zip(x.iter()) {
+                    let Some(entry) = plain.pattern(k).entry(place) else { continue };
+                    let a = plain.row(k)[entry];
                     if is_dynamic(self.columns[place]) {
-                        dynamic += row[place] * value;
-                        equations.a[k * columns + place] = row[place] * reciprocal[j];
+                        dynamic += a * value;
+                        *equations.at_mut(k, place) = a * reciprocal[j];
                     } else {
-                        friction += row[place] * value;
+                        friction += a * value;
                     }
                 }
                 residuals[k] = measured[k] + fixed[k] - dynamic * reciprocal[j] - friction;
-                equations.a[k * columns + self.place(Column::Gain(j))] = dynamic;
+                *equations.at_mut(k, self.place(Column::Gain(j))) = dynamic;
             }
             equations.b.clone_from(&residuals);
             if round < 6 {

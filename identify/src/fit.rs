@@ -21,13 +21,40 @@ pub struct Row {
     pub counts: bool,
 }
 
-/// Equations A x = b, row by row.
+/// The columns that rows of a kind have; all others are 0 in them.
+#[derive(Clone, Debug, Default)]
+pub struct Pattern {
+    /// The columns.
+    pub places: Vec<usize>,
+    /// The entry of each column in such a row; none beyond the last and where it is 0.
+    entries: Vec<Option<usize>>,
+}
+
+impl Pattern {
+    /// Of these columns.
+    pub fn new(places: Vec<usize>) -> Pattern {
+        let mut entries = vec![None; places.iter().max().map_or(0, |last| last + 1)];
+        places.iter().enumerate().for_each(|(entry, &place)| entries[place] = Some(entry));
+        Pattern { places, entries }
+    }
+
+    /// The entry of a column.
+    pub fn entry(&self, place: usize) -> Option<usize> {
+        self.entries.get(place).copied().flatten()
+    }
+}
+
+/// Equations A x = b, row by row. A joint feels a part of the columns, and only these are kept: most of A is 0.
 #[derive(Clone, Debug, Default)]
 pub struct Equations {
     /// Columns.
     pub columns: usize,
-    /// A, row by row.
-    pub a: Vec<f64>,
+    /// Patterns of rows.
+    pub patterns: Vec<Pattern>,
+    /// The pattern of each row, and the place of its first entry.
+    starts: Vec<(usize, usize)>,
+    /// The entries of A, row by row.
+    a: Vec<f64>,
     /// b.
     pub b: Vec<f64>,
     /// Where the rows come from; those of one log in the order of time.
@@ -147,9 +174,66 @@ pub fn solve_fast(gram: &Gram) -> DVector<f64> {
 }
 
 impl Equations {
-    /// A row.
+    /// No row yet, with room for some whose columns all patterns together have.
+    pub fn new(columns: usize, patterns: Vec<Pattern>, rows: usize, entries: usize) -> Equations {
+        Equations {
+            columns,
+            patterns,
+            starts: Vec::with_capacity(rows),
+            a: Vec::with_capacity(entries),
+            b: Vec::with_capacity(rows),
+            rows: Vec::with_capacity(rows),
+        }
+    }
+
+    /// Of all columns, row by row.
+    pub fn dense(columns: usize, a: Vec<f64>, b: Vec<f64>, rows: Vec<Row>) -> Equations {
+        let starts = (0..rows.len()).map(|k| (0, k * columns)).collect();
+        Equations { columns, patterns: vec![Pattern::new((0..columns).collect())], starts, a, b, rows }
+    }
+
+    /// Adds a row of a pattern; its entries, which are 0.
+    pub fn push(&mut self, row: Row, b: f64, pattern: usize) -> &mut [f64] {
+        let start = self.a.len();
+        self.a.resize(start + self.patterns[pattern].places.len(), 0.0);
+        self.starts.push((pattern, start));
+        self.b.push(b);
+        self.rows.push(row);
+        &mut self.a[start..]
+    }
+
+    /// The pattern of a row.
+    pub fn pattern(&self, k: usize) -> &Pattern {
+        &self.patterns[self.starts[k].0]
+    }
+
+    /// The entries of a row, in the order of its pattern.
     pub fn row(&self, k: usize) -> &[f64] {
-        &self.a[k * self.columns..(k + 1) * self.columns]
+        let (pattern, start) = self.starts[k];
+        &self.a[start..start + self.patterns[pattern].places.len()]
+    }
+
+    /// An entry of A.
+    pub fn at(&self, k: usize, place: usize) -> f64 {
+        self.pattern(k).entry(place).map_or(0.0, |entry| self.row(k)[entry])
+    }
+
+    /// An entry that the pattern of its row has.
+    pub fn at_mut(&mut self, k: usize, place: usize) -> &mut f64 {
+        let (pattern, start) = self.starts[k];
+        &mut self.a[start + self.patterns[pattern].entry(place).expect("a column of the row")]
+    }
+
+    /// A x row by row, for values of some columns.
+    pub fn product<'e>(&'e self, values: &[(usize, f64)]) -> impl Fn(usize) -> f64 + 'e {
+        let of = |pattern: &Pattern| -> Vec<(usize, f64)> {
+            values.iter().filter_map(|&(place, x)| Some((pattern.entry(place)?, x))).collect()
+        };
+        let of_patterns: Vec<Vec<(usize, f64)>> = self.patterns.iter().map(of).collect();
+        move |k| {
+            let (pattern, start) = self.starts[k];
+            of_patterns[pattern].iter().map(|(entry, x)| self.a[start + entry] * x).sum()
+        }
     }
 
     /// A'WA, A'Wb, b'Wb of all columns.
@@ -159,12 +243,8 @@ impl Equations {
 
     /// b - A x.
     pub fn residuals(&self, active: &[usize], x: &DVector<f64>) -> Vec<f64> {
-        (0..self.b.len())
-            .map(|k| {
-                let row = self.row(k);
-                self.b[k] - active.iter().zip(x.iter()).map(|(&i, x)| row[i] * x).sum::<f64>()
-            })
-            .collect()
+        let product = self.product(&active.iter().copied().zip(x.iter().copied()).collect::<Vec<_>>());
+        (0..self.b.len()).map(|k| self.b[k] - product(k)).collect()
     }
 
     /// Robust weights of residuals: 1/s_j² times Huber's weight at 1.5 s_j; and s_j, by joint.
@@ -268,6 +348,10 @@ pub fn block_length(equations: &Equations, residuals: &[f64], weights: &[f64], j
 /// The score A'W r of each block of time.
 pub fn scores(equations: &Equations, active: &[usize], residuals: &[f64], weights: &[f64], length: f64) -> Vec<DVector<f64>> {
     let mut scores: Vec<DVector<f64>> = Vec::new();
+    let entries = |pattern: &Pattern| -> Vec<(usize, usize)> {
+        active.iter().enumerate().filter_map(|(i, &place)| Some((i, pattern.entry(place)?))).collect()
+    };
+    let of_patterns: Vec<Vec<(usize, usize)>> = equations.patterns.iter().map(entries).collect();
     let mut block: Option<(usize, f64)> = None;
     for (k, row) in equations.rows.iter().enumerate() {
         let inside = block.is_some_and(|(log, start)| log == row.log && (0.0..length).contains(&(row.time - start)));
@@ -278,8 +362,8 @@ pub fn scores(equations: &Equations, active: &[usize], residuals: &[f64], weight
         if weights[k] > 0.0 {
             let score = scores.last_mut().expect("a block");
             let a = equations.row(k);
-            for (place, &i) in active.iter().enumerate() {
-                score[place] += weights[k] * residuals[k] * a[i];
+            for &(i, entry) in &of_patterns[equations.starts[k].0] {
+                score[i] += weights[k] * residuals[k] * a[entry];
             }
         }
     }

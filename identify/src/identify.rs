@@ -13,7 +13,7 @@ use nalgebra::{DMatrix, DVector};
 use crate::arm::Arm;
 use crate::estimate::{Column, Estimate, Run};
 use crate::finding::{Code, Finding, Findings};
-use crate::fit::FEW_BLOCKS;
+use crate::fit::{Covariance, Equations, Solution, FEW_BLOCKS};
 use crate::judge::{judge, Judgement, Model};
 use crate::log::Log;
 use crate::options::{Gains, Load, Options};
@@ -114,238 +114,372 @@ const COLOURED: f64 = 2.0;
 
 /// Identifies an arm. Nothing is returned where the findings hold errors.
 pub fn identify(arm: &Arm, inputs: &[Input], options: &Options, findings: &mut Findings) -> Option<Identified> {
-    let n = arm.dof();
     fitting(arm, &inputs[0].log.name, options, findings);
-    let is_locked = |j: &usize| options.without.contains(&arm.joints[*j].name);
-    let locked: Vec<usize> = (0..n).filter(is_locked).collect();
-    let mut logs: Vec<Log> = inputs.iter().map(|input| input.log.clone()).collect();
-    let mut flawed: Vec<Vec<Vec<Range<f64>>>> = Vec::new();
-    for log in &mut logs {
-        locked::hold(arm, &locked, log, findings);
-        let mut of_joints = suspect::signals(arm, log, &locked, findings);
-        // The torque of a lock is a reaction.
-        locked.iter().for_each(|&j| of_joints[j] = vec![f64::NEG_INFINITY..f64::INFINITY]);
-        flawed.push(of_joints);
-    }
-    let has_currents = inputs.iter().any(|input| input.log.is_current);
-    let gains = start_gains(arm, inputs, options, has_currents, findings);
-    if findings.has_errors() {
+    let torques = Torques::new(arm, inputs, options, findings)?;
+    let (cutoff, pieces) = torques.filtered(arm, options, findings)?;
+    let along_reference = options.instruments.then(|| torques.along_reference(arm, cutoff));
+    let mut estimate = torques.estimate(arm, &pieces, options);
+    if !enough_rows(&estimate, &inputs[0].log.name, findings) {
         return None;
     }
-    for log in logs.iter_mut().filter(|log| log.is_current) {
-        for (column, gain) in log.effort.iter_mut().zip(&gains) {
-            column.iter_mut().for_each(|x| *x *= gain);
-        }
+    estimate.fit_active();
+    if suspect::torques(&estimate, &inputs[0].log, &torques.gains, findings) {
+        return None;
     }
-    let mut sessions: Vec<String> = Vec::new();
-    let runs: Vec<Run> = inputs
-        .iter()
-        .map(|input| {
-            let session = sessions.iter().position(|known| *known == input.session).unwrap_or_else(|| {
-                sessions.push(input.session.clone());
-                sessions.len() - 1
-            });
-            Run { session, load: input.load.clone(), is_current: input.log.is_current }
-        })
-        .collect();
-    let rate = 1.0 / period(&logs[0].t);
-    let slowest = logs.iter().map(|log| 1.0 / period(&log.t)).fold(f64::INFINITY, f64::min);
-    let highest = (0.1 * slowest).max(3.0f64.min(0.2 * slowest));
-    let all = |cutoff: f64| -> Vec<Piece> {
-        logs.iter().enumerate().flat_map(|(place, log)| prepare(arm, place, log, cutoff, &flawed[place], true)).collect()
+    match &options.delay {
+        Some(given) => {
+            estimate.delays = (0..arm.dof()).map(|j| given.get(j).or(given.first()).copied().unwrap_or(0.0)).collect();
+        }
+        None => estimate.seek_delays(),
+    }
+    let mut terms = chosen_terms(&mut estimate, options);
+    estimate.along_reference = along_reference.as_deref();
+    let errors_of_delays = match options.delay {
+        Some(_) => vec![None; arm.dof()],
+        None => settled_delays(&mut estimate, &mut terms, options, &inputs[0].log, findings),
     };
-    let mut cutoff = options.cutoff.unwrap_or(highest);
-    let mut pieces = all(cutoff);
-    if pieces.is_empty() {
-        let text = format!("no stretch of the logs is longer than {:.1} s", 8.0 / cutoff);
-        let help = "log at least 10 s without a gap";
-        findings.push(Finding::new(Code::NoMotion, &logs[0].name, text, help));
-        return None;
+    if !findings.iter().any(|of| matches!(of.code, Code::SignSuspected | Code::JointOrder)) {
+        suspect::again(&estimate, &inputs[0].log, &torques.gains, findings);
     }
-    let simple = |_: usize, term: Friction| matches!(term, Friction::Viscous | Friction::Coulomb | Friction::Offset);
-    if options.cutoff.is_none() {
-        let mut first = Estimate::new(arm, &pieces, &runs, sessions.len());
-        fix(arm, options, &mut first);
-        first.activate(&simple);
-        let (equations, _) = first.equations(None);
-        first.fit(&equations);
-        let chosen = cutoff_of(&first, highest);
-        if chosen < cutoff {
-            cutoff = chosen;
-            pieces = all(cutoff);
+    let with_gains = torques.is_of_currents && options.gains == Gains::Identify;
+    let of_gains = with_gains.then(|| drive_gains(&mut estimate, &terms, &torques.gains));
+    let (equations, solution, covariance) = estimate.finish();
+    few_blocks(&covariance, &inputs[0].log.name, findings);
+    let (gains, matrix, reach) = match of_gains {
+        Some(of) => {
+            // The estimate whose intervals these are.
+            estimate.x = of.x;
+            (of.gains, of.matrix, of.reach)
         }
+        None => (torques.gains_as_given(), covariance.matrix.clone(), covariance.reach),
+    };
+    // A term of friction that was left out may be there, too small to be seen: the intervals of all others allow for it.
+    let wider = (options.friction.is_none() && !with_gains).then(|| with_terms_left_out(&estimate, &terms));
+    let intervals = intervals(&estimate, &matrix, reach, wider.as_ref());
+    if !options.instruments && !with_gains {
+        moved_by_half_the_cutoff(&estimate, &equations, &solution, cutoff, &intervals, &inputs[0].log.name, findings);
     }
-    let along_reference: Option<Vec<Piece>> = options.instruments.then(|| {
+    let unshown = unshown(&estimate, &solution, &matrix, !torques.locked.is_empty());
+    let shown = |k: usize| Interval { excited: !unshown.hidden[k], ..intervals[k] };
+    let of_base: Vec<usize> =
+        (0..estimate.active.len()).filter(|&k| matches!(estimate.columns[estimate.active[k]], Column::Base(_))).collect();
+    let last_session = torques.sessions.len() - 1;
+    let mut found = Identified {
+        base: of_base.iter().map(|&k| shown(k)).collect(),
+        friction: of_friction(&estimate, shown),
+        velocities: estimate.velocities.clone(),
+        gains,
+        loads: of_loads(&estimate, &intervals),
+        delays: of_delays(&estimate, &errors_of_delays, options.delay.is_some()),
+        cutoff,
+        rate: 1.0 / period(&torques.logs[0].t),
+        used: pieces.iter().map(|piece| piece.kept.len()).sum(),
+        condition: solution.condition,
+        log_det_per_parameter: solution.log_det_per_column,
+        inseparable: inseparable(arm, options).into_iter().chain(unshown.kept(&options.without)).collect(),
+        unexcited: unshown.directions,
+        spreads: (0..arm.dof()).map(|j| if torques.locked.contains(&j) { f64::INFINITY } else { estimate.spreads[j] }).collect(),
+        covariance: DMatrix::from_fn(of_base.len(), of_base.len(), |a, b| matrix[(of_base[a], of_base[b])]),
+        blocks: covariance.blocks,
+        reduced: reduce(&estimate, &equations, last_session, &matrix, reach),
+        held: held(&estimate, last_session),
+        sessions: torques.sessions.clone(),
+        judgements: Vec::new(),
+    };
+    if !with_gains {
+        loads(&estimate, &terms, inputs, findings);
+    }
+    let judged = |(place, log): (usize, &Log)| {
+        // The correction of gains applies to the torques that the model is judged by.
+        let log = in_torques(log.clone(), &estimate.corrections);
+        judge(arm, &log, &model_of(arm, &estimate, place, &found))
+    };
+    found.judgements = torques.logs.iter().enumerate().map(judged).collect();
+    for (input, judgement) in inputs.iter().zip(&found.judgements) {
+        poor_fits(arm, &input.log, judgement, findings);
+    }
+    Some(found)
+}
+
+/// Logs with torques in place of currents, and all that is known of them before they are filtered.
+struct Torques {
+    logs: Vec<Log>,
+    /// Stretches of time with torques that do not count, by log and joint.
+    flawed: Vec<Vec<Vec<Range<f64>>>>,
+    /// Joints that are locked in all logs.
+    locked: Vec<usize>,
+    is_of_currents: bool,
+    /// Torque over what the logs hold, by joint.
+    gains: Vec<f64>,
+    /// Names of the sessions.
+    sessions: Vec<String>,
+    runs: Vec<Run>,
+}
+
+impl Torques {
+    fn new(arm: &Arm, inputs: &[Input], options: &Options, findings: &mut Findings) -> Option<Torques> {
+        let locked: Vec<usize> = (0..arm.dof()).filter(|&j| options.without.contains(&arm.joints[j].name)).collect();
+        let mut logs: Vec<Log> = inputs.iter().map(|input| input.log.clone()).collect();
+        let mut flawed: Vec<Vec<Vec<Range<f64>>>> = Vec::new();
+        for log in &mut logs {
+            locked::hold(arm, &locked, log, findings);
+            let mut of_joints = suspect::signals(arm, log, &locked, findings);
+            // The torque of a lock is a reaction.
+            locked.iter().for_each(|&j| of_joints[j] = vec![f64::NEG_INFINITY..f64::INFINITY]);
+            flawed.push(of_joints);
+        }
+        let is_of_currents = inputs.iter().any(|input| input.log.is_current);
+        let gains = start_gains(arm, inputs, options, is_of_currents, findings);
+        if findings.has_errors() {
+            return None;
+        }
+        let mut sessions: Vec<String> = Vec::new();
+        let mut session_of = |name: &String| {
+            sessions.iter().position(|known| known == name).unwrap_or_else(|| {
+                sessions.push(name.clone());
+                sessions.len() - 1
+            })
+        };
+        let run = |input: &Input| Run {
+            session: session_of(&input.session),
+            load: input.load.clone(),
+            is_current: input.log.is_current,
+        };
+        let runs: Vec<Run> = inputs.iter().map(run).collect();
+        let logs = logs.into_iter().map(|log| in_torques(log, &gains)).collect();
+        Some(Torques { logs, flawed, locked, is_of_currents, gains, sessions, runs })
+    }
+
+    /// Gains that nothing was found of; none where the logs hold torques.
+    fn gains_as_given(&self) -> Vec<Interval> {
+        let given = |gain: &f64| Interval { value: *gain, low: *gain, high: *gain, ..Interval::default() };
+        self.gains.iter().filter(|_| self.is_of_currents).map(given).collect()
+    }
+
+    /// Filtered stretches of the logs with a cutoff, Hz.
+    fn pieces(&self, arm: &Arm, cutoff: f64) -> Vec<Piece> {
+        let of_log = |(place, log)| prepare(arm, place, log, cutoff, &self.flawed[place], true);
+        self.logs.iter().enumerate().flat_map(of_log).collect()
+    }
+
+    /// The cutoff of the options, or the lowest that the motion needs, and the stretches of the logs that it leaves.
+    fn filtered(&self, arm: &Arm, options: &Options, findings: &mut Findings) -> Option<(f64, Vec<Piece>)> {
+        let slowest = self.logs.iter().map(|log| 1.0 / period(&log.t)).fold(f64::INFINITY, f64::min);
+        let highest = (0.1 * slowest).max(3.0f64.min(0.2 * slowest));
+        let cutoff = options.cutoff.unwrap_or(highest);
+        let pieces = self.pieces(arm, cutoff);
+        if pieces.is_empty() {
+            let text = format!("no stretch of the logs is longer than {:.1} s", 8.0 / cutoff);
+            let help = "log at least 10 s without a gap";
+            findings.push(Finding::new(Code::NoMotion, &self.logs[0].name, text, help));
+            return None;
+        }
+        if options.cutoff.is_none() {
+            let mut first = self.estimate(arm, &pieces, options);
+            first.fit_active();
+            let chosen = cutoff_of(&first, highest);
+            if chosen < cutoff {
+                return Some((chosen, self.pieces(arm, chosen)));
+            }
+        }
+        Some((cutoff, pieces))
+    }
+
+    /// The same stretches along the reference of the drives.
+    fn along_reference(&self, arm: &Arm, cutoff: f64) -> Vec<Piece> {
         let along = |log: &Log| {
             let reference = log.reference.iter().flatten().zip(&log.q);
             // Drives follow late: a sign that changes early is no instrument.
             Log { q: reference.map(|(reference, q)| nearest(&log.t, reference, q)).collect(), dq: None, ..log.clone() }
         };
-        let logs = logs.iter().map(along).enumerate();
-        logs.flat_map(|(place, log)| prepare(arm, place, &log, cutoff, &flawed[place], true)).collect()
-    });
-    let mut estimate = Estimate::new(arm, &pieces, &runs, sessions.len());
-    fix(arm, options, &mut estimate);
-    estimate.activate(&simple);
+        let of_log = |(place, log): (usize, &Log)| prepare(arm, place, &along(log), cutoff, &self.flawed[place], true);
+        self.logs.iter().enumerate().flat_map(of_log).collect()
+    }
+
+    /// An estimate that begins with the simplest friction.
+    fn estimate<'a>(&'a self, arm: &'a Arm, pieces: &'a [Piece], options: &Options) -> Estimate<'a> {
+        let mut estimate = Estimate::new(arm, pieces, &self.runs, self.sessions.len());
+        fix(arm, options, &mut estimate);
+        estimate.activate(&|_, term| SIMPLE.contains(&term));
+        estimate
+    }
+}
+
+/// A log of currents times gains; a log of torques as it is.
+fn in_torques(mut log: Log, gains: &[f64]) -> Log {
+    for (column, gain) in log.effort.iter_mut().zip(gains).filter(|_| log.is_current) {
+        column.iter_mut().for_each(|x| *x *= gain);
+    }
+    log
+}
+
+/// Terms of friction that every joint may have.
+const SIMPLE: [Friction; 3] = [Friction::Viscous, Friction::Coulomb, Friction::Offset];
+
+/// Whether joints move in at least five times as many rows as there are unknowns.
+fn enough_rows(estimate: &Estimate<'_>, log: &str, findings: &mut Findings) -> bool {
     let unknowns = estimate.active.len();
-    let moving: usize = pieces.iter().map(|piece| piece.counts.iter().filter(|counts| **counts).count()).sum();
+    let moving: usize = estimate.pieces.iter().map(|piece| piece.counts.iter().filter(|counts| **counts).count()).sum();
     if moving < 5 * unknowns {
         let text = format!("{moving} rows of joints in motion, and {unknowns} unknowns");
         let help = "move all joints, longer or faster: `armgen excite` plans such a motion";
-        findings.push(Finding::new(Code::NoMotion, &logs[0].name, text, help));
-        return None;
+        findings.push(Finding::new(Code::NoMotion, log, text, help));
     }
-    let (equations, _) = estimate.equations(None);
-    estimate.fit(&equations);
-    if suspect::torques(&estimate, &inputs[0].log, &gains, findings) {
-        return None;
-    }
-    if let Some(given) = &options.delay {
-        estimate.delays = (0..n).map(|j| given.get(j).or(given.first()).copied().unwrap_or(0.0)).collect();
-    } else {
-        estimate.seek_delays();
-    }
-    let wanted = options.friction.clone().unwrap_or_else(|| vec![Friction::Viscous, Friction::Coulomb, Friction::Offset]);
-    let mut chosen: Vec<Vec<Friction>> = vec![wanted; n];
-    let activate = |estimate: &mut Estimate<'_>, chosen: &[Vec<Friction>]| {
-        estimate.activate(&|joint, term| chosen[joint].contains(&term));
-        let (equations, _) = estimate.equations(None);
-        estimate.fit(&equations);
-    };
-    activate(&mut estimate, &chosen);
+    moving >= 5 * unknowns
+}
+
+/// The terms of friction of each joint: those of the options, or those that cross-validation chooses. The estimate has them.
+fn chosen_terms(estimate: &mut Estimate<'_>, options: &Options) -> Vec<Vec<Friction>> {
+    let n = estimate.arm.dof();
+    let is_free = options.friction.is_none();
+    let mut terms: Vec<Vec<Friction>> = vec![options.friction.clone().unwrap_or_else(|| SIMPLE.to_vec()); n];
+    estimate.fit_terms(&terms);
     for round in 0..3 {
         estimate.renew_sizes();
-        if round == 0 && options.friction.is_none() {
-            estimate.choose(&mut chosen, Friction::Load);
+        if round == 0 && is_free {
+            estimate.choose(&mut terms, Friction::Load);
         }
-        activate(&mut estimate, &chosen);
+        estimate.fit_terms(&terms);
     }
-    if options.friction.is_none() {
-        // Cubic friction alone takes a part of Stribeck friction, so it comes last.
-        let inside = estimate.stribeck_velocities(&|_| true);
-        let mut with = chosen.clone();
-        estimate.choose(&mut with, Friction::Stribeck);
-        (0..n).filter(|&j| inside[j]).for_each(|j| chosen[j].clone_from(&with[j]));
-        activate(&mut estimate, &chosen);
-        for _ in 0..2 {
-            estimate.stribeck_velocities(&|j| chosen[j].contains(&Friction::Stribeck));
-            activate(&mut estimate, &chosen);
-        }
-        estimate.choose(&mut chosen, Friction::Cubic);
-        activate(&mut estimate, &chosen);
-        // Where the others were missing, they may have hidden it.
-        estimate.renew_sizes();
-        estimate.choose(&mut chosen, Friction::Load);
-        activate(&mut estimate, &chosen);
-        estimate.renew_sizes();
-        activate(&mut estimate, &chosen);
-        estimate.prune(&mut chosen, &[Friction::Load, Friction::Cubic, Friction::Stribeck]);
-        activate(&mut estimate, &chosen);
+    if !is_free {
+        return terms;
     }
-    estimate.along_reference = along_reference.as_deref();
-    let mut of_delays = vec![None; n];
-    if options.delay.is_none() {
-        of_delays = estimate.settle(true);
-        if estimate.leave_undetermined_delays(&of_delays) {
-            of_delays = estimate.settle(false);
-        }
-        // Delays that were nearly right may have hidden terms.
-        let before = chosen.clone();
-        if options.friction.is_none() && !options.instruments {
-            estimate.choose(&mut chosen, Friction::Cubic);
-            estimate.choose(&mut chosen, Friction::Load);
-        }
-        if chosen != before {
-            activate(&mut estimate, &chosen);
-            estimate.renew_sizes();
-            activate(&mut estimate, &chosen);
-            estimate.prune(&mut chosen, &[Friction::Load, Friction::Cubic, Friction::Stribeck]);
-            activate(&mut estimate, &chosen);
-            of_delays = estimate.settle(false);
-        }
-        for (j, delay) in estimate.delays.iter().enumerate().filter(|(_, delay)| Estimate::is_last_delay(**delay)) {
-            let text = format!("the delay of joint `{}`, {:.1} ms, is at the end of its range", arm.joints[j].name, 1e3 * delay);
-            let help = "bring the stamps of torques and positions together, or give `delay` in the options; noise of positions leads here, too: log rates (`dq_JOINT`)";
-            let column = inputs[0].log.effort_column(&arm.joints[j].name);
-            findings.push(Finding::new(Code::DelayAtLimit, &inputs[0].log.name, text, help).in_column(column));
-        }
+    // Cubic friction alone takes a part of Stribeck friction, so it comes last.
+    let inside = estimate.stribeck_velocities(&|_| true);
+    let mut with = terms.clone();
+    estimate.choose(&mut with, Friction::Stribeck);
+    (0..n).filter(|&j| inside[j]).for_each(|j| terms[j].clone_from(&with[j]));
+    estimate.fit_terms(&terms);
+    for _ in 0..2 {
+        estimate.stribeck_velocities(&|j| terms[j].contains(&Friction::Stribeck));
+        estimate.fit_terms(&terms);
     }
-    if !findings.iter().any(|of| matches!(of.code, Code::SignSuspected | Code::JointOrder)) {
-        suspect::again(&estimate, &inputs[0].log, &gains, findings);
+    estimate.choose(&mut terms, Friction::Cubic);
+    estimate.fit_terms(&terms);
+    // Where the others were missing, they may have hidden it.
+    estimate.renew_sizes();
+    estimate.choose(&mut terms, Friction::Load);
+    without_insignificant(estimate, &mut terms);
+    terms
+}
+
+/// Takes back terms of friction that are smaller than their intervals, once |g| is that of all others.
+fn without_insignificant(estimate: &mut Estimate<'_>, terms: &mut [Vec<Friction>]) {
+    estimate.fit_terms(terms);
+    estimate.renew_sizes();
+    estimate.fit_terms(terms);
+    estimate.prune(terms, &[Friction::Load, Friction::Cubic, Friction::Stribeck]);
+    estimate.fit_terms(terms);
+}
+
+/// The standard errors of delays and halves of their intervals. Delays, and terms of friction that they hid, are those of the estimate.
+fn settled_delays(
+    estimate: &mut Estimate<'_>,
+    terms: &mut [Vec<Friction>],
+    options: &Options,
+    log: &Log,
+    findings: &mut Findings,
+) -> Vec<Option<[f64; 2]>> {
+    let mut errors = estimate.settle(true);
+    if estimate.leave_undetermined_delays(&errors) {
+        errors = estimate.settle(false);
     }
-    let identify_gains = has_currents && options.gains == Gains::Identify;
-    let mut gain_intervals: Vec<Interval> = Vec::new();
-    let mut of_gains = None;
-    if identify_gains {
-        let mut held = vec![false; n];
-        loop {
-            activate(&mut estimate, &chosen);
-            let mut trial = estimate.clone();
-            let (corrections, sigmas, matrix, reach) = trial.gains(&held);
-            // Load friction takes |g| of the corrected torques.
-            trial.renew_sizes();
-            let (corrections, sigmas, matrix, reach) = if chosen.iter().any(|terms| terms.contains(&Friction::Load)) {
-                trial.gains(&held)
-            } else {
-                (corrections, sigmas, matrix, reach)
-            };
-            let worst = (0..n)
-                .filter(|&j| !held[j] && (reach * sigmas[j] > 0.5 * corrections[j] || !corrections[j].is_finite()))
-                .max_by(|&a, &b| (sigmas[a] / corrections[a]).total_cmp(&(sigmas[b] / corrections[b])));
-            if let Some(j) = worst {
-                held[j] = true;
-                continue;
-            }
-            gain_intervals = (0..n)
-                .map(|j| {
-                    let (value, sigma) = (gains[j] * corrections[j], gains[j] * sigmas[j]);
-                    Interval { value, sigma, low: value - reach * sigma, high: value + reach * sigma, excited: !held[j] }
-                })
-                .collect();
-            of_gains = Some((trial.active.clone(), matrix, reach, trial.x.clone()));
-            estimate = trial;
-            break;
+    // Delays that were nearly right may have hidden terms.
+    let before = terms.to_vec();
+    if options.friction.is_none() && !options.instruments {
+        estimate.choose(terms, Friction::Cubic);
+        estimate.choose(terms, Friction::Load);
+    }
+    if *terms != *before {
+        without_insignificant(estimate, terms);
+        errors = estimate.settle(false);
+    }
+    for (joint, delay) in estimate.arm.joints.iter().zip(&estimate.delays).filter(|(_, delay)| Estimate::is_last_delay(**delay)) {
+        let text = format!("the delay of joint `{}`, {:.1} ms, is at the end of its range", joint.name, 1e3 * delay);
+        let help = "bring the stamps of torques and positions together, or give `delay` in the options; noise of positions leads here, too: log rates (`dq_JOINT`)";
+        findings.push(Finding::new(Code::DelayAtLimit, &log.name, text, help).in_column(log.effort_column(&joint.name)));
+    }
+    errors
+}
+
+/// Drive gains, and the estimate that they belong to.
+struct DriveGains {
+    gains: Vec<Interval>,
+    /// Values of all columns.
+    x: DVector<f64>,
+    /// The covariance of the active columns.
+    matrix: DMatrix<f64>,
+    reach: f64,
+}
+
+/// Drive gains by maximum likelihood, the least certain ones kept one after the other until the logs determine the rest.
+fn drive_gains(estimate: &mut Estimate<'_>, terms: &[Vec<Friction>], given: &[f64]) -> DriveGains {
+    let n = estimate.arm.dof();
+    let mut held = vec![false; n];
+    loop {
+        estimate.fit_terms(terms);
+        let mut trial = estimate.clone();
+        let mut of_trial = trial.gains(&held);
+        // Load friction takes |g| of the corrected torques.
+        trial.renew_sizes();
+        if terms.iter().any(|terms| terms.contains(&Friction::Load)) {
+            of_trial = trial.gains(&held);
         }
-    } else if has_currents {
-        gain_intervals =
-            gains.iter().map(|gain| Interval { value: *gain, sigma: 0.0, low: *gain, high: *gain, excited: false }).collect();
-    }
-    let x_of_gains = of_gains.as_ref().map(|(.., x)| x.clone());
-    let (equations, solution, covariance) = estimate.finish();
-    let (matrix, reach) = match of_gains {
-        Some((_, matrix, reach, _)) => (matrix, reach),
-        None => (covariance.matrix.clone(), covariance.reach),
-    };
-    if let Some(x) = x_of_gains {
-        // The estimate whose intervals these are.
-        estimate.x = x;
-    }
-    if (covariance.blocks as f64) < FEW_BLOCKS {
-        let text = format!("{} independent stretches of time: intervals use Student's t", covariance.blocks);
-        let (text, help) = if covariance.length > COLOURED {
-            let text = format!("{text}; residuals are correlated over {:.1} s", covariance.length / 5.0);
-            (text, "the model or the log is wrong there, and a longer log does not mend it: look at the residuals of each joint, `--report`")
-        } else {
-            (text, "log 30 s or more for narrow intervals")
+        let (corrections, sigmas, matrix, reach) = of_trial;
+        let worst = (0..n)
+            .filter(|&j| !held[j] && (reach * sigmas[j] > 0.5 * corrections[j] || !corrections[j].is_finite()))
+            .max_by(|&a, &b| (sigmas[a] / corrections[a]).total_cmp(&(sigmas[b] / corrections[b])));
+        if let Some(j) = worst {
+            held[j] = true;
+            continue;
+        }
+        let interval = |j: usize| {
+            let (value, sigma) = (given[j] * corrections[j], given[j] * sigmas[j]);
+            Interval { value, sigma, low: value - reach * sigma, high: value + reach * sigma, excited: !held[j] }
         };
-        findings.push(Finding::new(Code::ShortLog, &logs[0].name, text, help));
+        let gains = (0..n).map(interval).collect();
+        *estimate = trial;
+        return DriveGains { gains, x: estimate.x.clone(), matrix, reach };
     }
-    // A term of friction that was left out may be there, too small to be seen: the intervals of all others allow for it.
-    let wider = (options.friction.is_none() && !identify_gains).then(|| {
-        let mut wider = estimate.clone();
-        wider.activate(&|joint, term| chosen[joint].contains(&term) || matches!(term, Friction::Load | Friction::Cubic));
-        let (.., covariance) = wider.finish();
-        (wider, covariance)
-    });
-    let interval = |k: usize| {
-        let place = estimate.active[k];
+}
+
+/// A finding where so few blocks of time are independent that intervals are those of Student's t.
+fn few_blocks(covariance: &Covariance, log: &str, findings: &mut Findings) {
+    if covariance.blocks as f64 >= FEW_BLOCKS {
+        return;
+    }
+    let mut text = format!("{} independent stretches of time: intervals use Student's t", covariance.blocks);
+    let mut help = "log 30 s or more for narrow intervals";
+    if covariance.length > COLOURED {
+        text += &format!("; residuals are correlated over {:.1} s", covariance.length / 5.0);
+        help = "the model or the log is wrong there, and a longer log does not mend it: look at the residuals of each joint, `--report`";
+    }
+    findings.push(Finding::new(Code::ShortLog, log, text, help));
+}
+
+/// The estimate with load and cubic friction of all joints, and its covariance.
+fn with_terms_left_out<'a>(estimate: &Estimate<'a>, terms: &[Vec<Friction>]) -> (Estimate<'a>, Covariance) {
+    let mut wider = estimate.clone();
+    wider.activate(&|joint, term| terms[joint].contains(&term) || matches!(term, Friction::Load | Friction::Cubic));
+    let (.., covariance) = wider.finish();
+    (wider, covariance)
+}
+
+/// Intervals of the active columns; with those of a wider estimate they reach from end to end of both.
+fn intervals(
+    estimate: &Estimate<'_>,
+    matrix: &DMatrix<f64>,
+    reach: f64,
+    wider: Option<&(Estimate<'_>, Covariance)>,
+) -> Vec<Interval> {
+    let interval = |(k, &place): (usize, &usize)| {
         let value = estimate.x[place];
         let around = |middle: f64, matrix: &DMatrix<f64>, k: usize, reach: f64| {
             let sigma = matrix[(k, k)].max(0.0).sqrt();
             Interval { value, sigma, low: middle - reach * sigma, high: middle + reach * sigma, excited: true }
         };
-        let own = around(value, &matrix, k, reach);
-        match wider.as_ref().and_then(|(wider, of)| Some((wider, of, wider.active.binary_search(&place).ok()?))) {
+        let own = around(value, matrix, k, reach);
+        match wider.and_then(|(wider, of)| Some((wider, of, wider.active.binary_search(&place).ok()?))) {
             Some((wider, of, k)) => {
                 let wide = around(wider.x[place], &of.matrix, k, of.reach);
                 Interval { low: wide.low.min(own.low), high: wide.high.max(own.high), ..wide }
@@ -353,117 +487,87 @@ pub fn identify(arm: &Arm, inputs: &[Input], options: &Options, findings: &mut F
             None => own,
         }
     };
-    if !options.instruments && !identify_gains {
-        let moved = estimate.moved_by_half_the_cutoff(&equations, &solution, cutoff, &|k, x| {
-            let Interval { low, high, .. } = interval(k);
-            x < low || x > high
-        });
-        if !moved.is_empty() {
-            let names: Vec<String> = moved.iter().take(3).map(|&k| column_name(&estimate, k)).collect();
-            let text = format!(
-                "{} of {} estimates leave their intervals at half the cutoff: {}",
-                moved.len(),
-                estimate.active.len(),
-                names.join(", ")
-            );
-            let help = "noise of the positions biases them, or terms that the model lacks: log rates (`dq_JOINT`), or the reference of the drives (`qr_JOINT`) for `--instruments`, or choose a lower `cutoff`";
-            findings.push(Finding::new(Code::BiasedRegressor, &logs[0].name, text, help));
-        }
+    estimate.active.iter().enumerate().map(interval).collect()
+}
+
+/// A finding where estimates leave their intervals at half the cutoff.
+fn moved_by_half_the_cutoff(
+    estimate: &Estimate<'_>,
+    equations: &Equations,
+    solution: &Solution,
+    cutoff: f64,
+    intervals: &[Interval],
+    log: &str,
+    findings: &mut Findings,
+) {
+    let is_outside = |k: usize, x: f64| x < intervals[k].low || x > intervals[k].high;
+    let moved = estimate.moved_by_half_the_cutoff(equations, solution, cutoff, &is_outside);
+    if moved.is_empty() {
+        return;
     }
-    let unshown = unshown(&estimate, &solution, &matrix, !locked.is_empty());
-    let hidden = &unshown.hidden;
-    let kept = (!unshown.of_locked.is_empty()).then(|| {
-        let names: Vec<&str> = unshown.of_locked.iter().map(String::as_str).collect();
-        format!(
-            "without {}, the logs do not show {} in full: they keep of the file what is missing",
-            options.without.join(", "),
-            names.join(", ")
-        )
-    });
-    let mut found = Identified {
-        velocities: estimate.velocities.clone(),
-        sessions,
-        gains: gain_intervals,
-        cutoff,
-        rate,
-        used: pieces.iter().map(|piece| piece.kept.len()).sum(),
-        condition: solution.condition,
-        log_det_per_parameter: solution.log_det_per_column,
-        unexcited: unshown.directions,
-        inseparable: inseparable(arm, options).into_iter().chain(kept).collect(),
-        spreads: (0..n).map(|j| if locked.contains(&j) { f64::INFINITY } else { estimate.spreads[j] }).collect(),
-        blocks: covariance.blocks,
-        ..Identified::default()
+    let names: Vec<String> = moved.iter().take(3).map(|&k| column_name(estimate, k)).collect();
+    let text = format!(
+        "{} of {} estimates leave their intervals at half the cutoff: {}",
+        moved.len(),
+        estimate.active.len(),
+        names.join(", ")
+    );
+    let help = "noise of the positions biases them, or terms that the model lacks: log rates (`dq_JOINT`), or the reference of the drives (`qr_JOINT`) for `--instruments`, or choose a lower `cutoff`";
+    findings.push(Finding::new(Code::BiasedRegressor, log, text, help));
+}
+
+/// Friction of all sessions, with the interval of each active column.
+fn of_friction(estimate: &Estimate<'_>, interval: impl Fn(usize) -> Interval) -> Vec<FrictionValue> {
+    let of = |(k, &place): (usize, &usize)| match estimate.columns[place] {
+        Column::Friction(session, joint, term) => Some(FrictionValue { session, joint, term, value: interval(k) }),
+        _ => None,
     };
-    let of_base: Vec<usize> =
-        (0..estimate.active.len()).filter(|&k| matches!(estimate.columns[estimate.active[k]], Column::Base(_))).collect();
-    found.base = of_base.iter().map(|&k| Interval { excited: !hidden[k], ..interval(k) }).collect();
-    found.covariance = DMatrix::from_fn(of_base.len(), of_base.len(), |a, b| matrix[(of_base[a], of_base[b])]);
-    for (k, &place) in estimate.active.iter().enumerate() {
-        if let Column::Friction(session, joint, term) = estimate.columns[place] {
-            found.friction.push(FrictionValue { session, joint, term, value: Interval { excited: !hidden[k], ..interval(k) } });
-        }
-    }
-    let delay = |j: usize| {
-        let (value, [sigma, half]) = (estimate.delays[j], of_delays[j].unwrap_or_default());
-        let excited = options.delay.is_some() || of_delays[j].is_some();
-        Interval { value, sigma, low: value - half, high: value + half, excited }
-    };
-    found.delays = (0..n).map(delay).collect();
-    for (log, _) in runs.iter().enumerate().filter(|(_, run)| run.load.is_there) {
+    estimate.active.iter().enumerate().filter_map(of).collect()
+}
+
+/// The ten of the load of each log that has one.
+fn of_loads(estimate: &Estimate<'_>, intervals: &[Interval]) -> Vec<(usize, Vec<Option<Interval>>)> {
+    let of_log = |log: usize| {
         let known = estimate.known_load(log);
-        let ten = (0..10)
-            .map(|k| {
-                let place = estimate.place(Column::Load(log, k));
-                match estimate.active.iter().position(|active| *active == place) {
-                    Some(k) => Some(interval(k)),
-                    None if known[k] != 0.0 => {
-                        Some(Interval { value: known[k], low: known[k], high: known[k], ..Interval::default() })
-                    }
-                    None => None,
-                }
-            })
-            .collect();
-        found.loads.push((log, ten));
-    }
-    found.reduced = reduce(&estimate, &equations, found.sessions.len() - 1, &matrix, reach);
-    for &(place, value) in &estimate.fixed {
-        if let Column::Friction(session, joint, term) = estimate.columns[place] {
-            if session + 1 == found.sessions.len() {
-                found.held.push((joint, term, value));
-            }
-        }
-    }
-    if !identify_gains {
-        loads(&estimate, &chosen, inputs, findings);
-    }
-    // The correction of gains applies to the torques that the model is judged by.
-    for log in logs.iter_mut().filter(|log| log.is_current) {
-        for (column, correction) in log.effort.iter_mut().zip(&estimate.corrections) {
-            column.iter_mut().for_each(|x| *x *= correction);
-        }
-    }
-    for (place, log) in logs.iter().enumerate() {
-        let model = model_of(arm, &estimate, place, &found);
-        found.judgements.push(judge(arm, log, &model));
-    }
-    for (input, judgement) in inputs.iter().zip(&found.judgements) {
-        poor_fits(arm, &input.log, judgement, findings);
-    }
-    Some(found)
+        let of = |k: usize| match estimate.active.binary_search(&estimate.place(Column::Load(log, k))) {
+            Ok(k) => Some(intervals[k]),
+            Err(_) if known[k] != 0.0 => Some(Interval { value: known[k], low: known[k], high: known[k], ..Interval::default() }),
+            Err(_) => None,
+        };
+        (log, (0..10).map(of).collect())
+    };
+    (0..estimate.runs.len()).filter(|&log| estimate.runs[log].load.is_there).map(of_log).collect()
+}
+
+/// Delays with standard errors and halves of their intervals.
+fn of_delays(estimate: &Estimate<'_>, errors: &[Option<[f64; 2]>], is_given: bool) -> Vec<Interval> {
+    let delay = |(&value, error): (&f64, &Option<[f64; 2]>)| {
+        let [sigma, half] = error.unwrap_or_default();
+        Interval { value, sigma, low: value - half, high: value + half, excited: is_given || error.is_some() }
+    };
+    estimate.delays.iter().zip(errors).map(delay).collect()
+}
+
+/// Friction of a session that options give: joint, term, value.
+fn held(estimate: &Estimate<'_>, session: usize) -> Vec<(usize, Friction, f64)> {
+    let of = |&(place, value): &(usize, f64)| match estimate.columns[place] {
+        Column::Friction(of, joint, term) if of == session => Some((joint, term, value)),
+        _ => None,
+    };
+    estimate.fixed.iter().filter_map(of).collect()
 }
 
 /// A mass that is given and fits better with another value is off by this part of it at least.
 const OTHER_MASS: f64 = 0.02;
 
 /// Known masses of loads against those that the logs show, where a log without this load does.
-fn loads(estimate: &Estimate<'_>, chosen: &[Vec<Friction>], inputs: &[Input], findings: &mut Findings) {
+fn loads(estimate: &Estimate<'_>, terms: &[Vec<Friction>], inputs: &[Input], findings: &mut Findings) {
     for (log, run) in estimate.runs.iter().enumerate() {
         let Some(mass) = run.load.mass else { continue };
         let mut runs = estimate.runs.to_vec();
         runs[log].load = Load { is_there: true, ..Load::default() };
         let mut free = Estimate { runs: &runs, ..estimate.clone() };
-        free.activate(&|joint, term| chosen[joint].contains(&term));
+        free.activate(&|joint, term| terms[joint].contains(&term));
         let (_, solution, covariance) = free.finish();
         let Ok(k) = free.active.binary_search(&free.place(Column::Load(log, 0))) else { continue };
         let is_hidden = solution.hidden.iter().any(|direction| direction[k].abs() > 1e-3);

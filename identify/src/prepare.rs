@@ -87,6 +87,8 @@ pub struct Piece {
     pub kept: Vec<usize>,
     /// Filtered Y_b of the kept samples, state by state, row by row; empty where it is not wanted.
     pub y: Vec<f64>,
+    /// Its columns that are not 0 throughout, by joint.
+    pub felt: Vec<Vec<usize>>,
     /// Filtered known torques of the kept samples, state by state.
     pub known: Vec<f64>,
     /// Whether a row counts, by kept sample and joint.
@@ -257,6 +259,7 @@ fn piece(
         ddq,
         tau,
         kept,
+        felt: felt(arm, &y),
         y,
         known,
         counts,
@@ -268,6 +271,14 @@ fn piece(
     };
     piece.of_rates = (0..n).map(|i| OF_RATES[..3].iter().map(|term| piece.column(i, *term, 1.0, &[], 0.0)).collect()).collect();
     piece
+}
+
+/// Columns of Y_b that are not 0 throughout, by joint.
+fn felt(arm: &Arm, y: &[f64]) -> Vec<Vec<usize>> {
+    let (n, base) = (arm.dof(), arm.base.len());
+    let mut is_felt = vec![false; n * base];
+    y.chunks_exact(n * base).for_each(|row| is_felt.iter_mut().zip(row).for_each(|(felt, y)| *felt |= *y != 0.0));
+    (0..n).map(|j| (0..base).filter(|column| is_felt[j * base + column]).collect()).collect()
 }
 
 /// Stretches of samples at which the sign of a rate is not known: those below its noise, but for those at which it passes 0 within so many
@@ -303,7 +314,11 @@ fn unsure_signs(rates: &[f64], noise: f64, swift: usize) -> Vec<Range<usize>> {
 fn smooth_sign(dq: f64, noise: f64) -> f64 {
     let (u, part) = (dq / (WIDTH * noise).max(f64::MIN_POSITIVE), 0.5 / (WIDTH * WIDTH));
     let k = (std::f64::consts::LN_2 + part) / (std::f64::consts::LN_2 - part);
-    let t = u.clamp(-40.0, 40.0).tanh();
+    // Beyond, tanh is 1 to all digits.
+    if u.abs() > 20.0 {
+        return u.signum();
+    }
+    let t = u.tanh();
     t + k * u * (1.0 - t * t)
 }
 
@@ -329,6 +344,7 @@ impl Piece {
             let columns = OF_RATES.map(|term| some(self.friction(j, term, velocities[j], &[], delays[j]), sign));
             columns.to_vec()
         };
+        let y = arm.regressor(&q, &dq, &ddq);
         let spacing = if rows.len() > 1 { self.kept[rows[1]] - self.kept[rows[0]] } else { step };
         Piece {
             log: self.log,
@@ -336,7 +352,8 @@ impl Piece {
             start: self.time(0),
             tau: torques.iter().map(torque).collect(),
             kept: (0..rows.len()).collect(),
-            y: arm.regressor(&q, &dq, &ddq),
+            felt: felt(arm, &y),
+            y,
             known: arm.known(&q, &dq, &ddq),
             counts: rows.iter().flat_map(|&row| order.iter().map(move |&(j, _)| self.counts[row * n + j])).collect(),
             eps: order.iter().map(|&(j, _)| self.eps[j]).collect(),

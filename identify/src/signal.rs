@@ -104,8 +104,13 @@ pub fn shifted(x: &[f64], at: impl IntoIterator<Item = usize>, by: f64) -> Vec<f
     let weights: Vec<f64> = (0..TAPS).map(weight).collect();
     let (first, last) = (first as isize, x.len().saturating_sub(1));
     let value = |k: usize| -> f64 {
-        let near = |i: usize| x[k.saturating_add_signed(first + i as isize).min(last)];
-        weights.iter().enumerate().map(|(i, weight)| weight * near(i)).sum()
+        match k.checked_add_signed(first).and_then(|start| x.get(start..start + weights.len())) {
+            Some(near) => weights.iter().zip(near).map(|(weight, x)| weight * x).sum(),
+            None => {
+                let near = |i: usize| x[k.saturating_add_signed(first + i as isize).min(last)];
+                weights.iter().enumerate().map(|(i, weight)| weight * near(i)).sum()
+            }
+        }
     };
     at.into_iter().map(value).collect()
 }

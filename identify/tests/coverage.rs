@@ -13,7 +13,7 @@ fn shares(logs: usize, memory: f64) -> (f64, f64) {
     let rows: Vec<Row> =
         (0..motion.tau.len()).map(|k| Row { joint: k % n, log: 0, time: motion.t[k / n], counts: true }).collect();
     let a = arm.regressor(&motion.q, &motion.dq, &motion.ddq);
-    let mut equations = Equations { columns: base, a, b: vec![0.0; rows.len()], rows };
+    let mut equations = Equations::dense(base, a, vec![0.0; rows.len()], rows);
     let active: Vec<usize> = (0..base).collect();
     let ones = vec![1.0; equations.b.len()];
     let mut gram = equations.gram(&ones);

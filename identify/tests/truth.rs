@@ -35,7 +35,7 @@ fn exact_states_give_base_parameters_to_nine_digits() {
         let known = arm.known(&motion.q, &motion.dq, &motion.ddq);
         let b: Vec<f64> = motion.tau.iter().zip(&known).map(|(tau, known)| tau - known).collect();
         let rows = (0..b.len()).map(|k| Row { joint: k % n, log: 0, time: motion.t[k / n], counts: true }).collect();
-        let equations = Equations { columns: base, a, b, rows };
+        let equations = Equations::dense(base, a, b, rows);
         let gram = equations.gram(&vec![1.0; motion.tau.len()]);
         let truth = &arm.combination * arm.nominal();
         let found = solve(&gram, &DVector::zeros(base));
@@ -43,7 +43,8 @@ fn exact_states_give_base_parameters_to_nine_digits() {
         // One step of refinement from the residuals themselves: normal equations lose half of the digits.
         let active: Vec<usize> = (0..base).collect();
         let residuals = equations.residuals(&active, &found.x);
-        let again = Equations { b: residuals, ..equations.clone() };
+        let mut again = equations.clone();
+        again.b = residuals;
         let x = &found.x + &found.inverse * again.gram(&vec![1.0; motion.tau.len()]).g;
         let error = (0..base).map(|k| (x[k] - truth[k]).abs()).fold(0.0, f64::max);
         assert!(error < 1e-9 * truth.amax(), "{}: {error:e}", arm.name);

@@ -88,7 +88,7 @@ impl Estimate<'_> {
         let n = self.arm.dof();
         let mut errors = vec![None; n];
         let own = self.activate_delays();
-        let (mut equations, known) = self.equations(None);
+        let (mut equations, known) = self.equations_with_delays(true);
         let projected = self.with_instruments(&mut equations);
         let (weights, solution) = self.fit_delays(projected.as_ref().unwrap_or(&equations), &equations, weights, is_direct);
         let residuals = equations.residuals(&self.active, &solution.x);
@@ -148,10 +148,7 @@ impl Estimate<'_> {
         let own = self.activate_delays();
         let mut weights = None;
         for _ in 0..steps {
-            let (mut equations, known) = self.equations(None);
-            if stage == 1 {
-                self.fill_delays(&mut equations, &known, false);
-            }
+            let (mut equations, _) = self.equations_with_delays(stage == 0);
             let projected = self.with_instruments(&mut equations);
             let before = weights.take().filter(|_| stage == 1);
             weights = Some(self.fit_delays(projected.as_ref().unwrap_or(&equations), &equations, before, stage == 1).0);
@@ -228,9 +225,16 @@ impl Estimate<'_> {
         !left.is_empty()
     }
 
+    /// The equations with columns of the delays that are unknown, and what is known.
+    pub(super) fn equations_with_delays(&self, with_dry: bool) -> (Equations, Vec<f64>) {
+        let (mut equations, known) = self.equations(None);
+        self.fill_delays(&mut equations, &known, with_dry);
+        (equations, known)
+    }
+
     /// The columns of delays that are unknown: the slope of the torque that the estimate predicts, with the other sign. `known` is by row. Without
     /// dry friction it is that between jumps.
-    pub(super) fn fill_delays(&self, equations: &mut Equations, known: &[f64], with_dry: bool) {
+    fn fill_delays(&self, equations: &mut Equations, known: &[f64], with_dry: bool) {
         let n = self.arm.dof();
         let unknown: Vec<(usize, usize)> =
             (0..n).filter(|&j| self.seeks_delay[j]).map(|j| (j, self.place(Column::Delay(j)))).collect();
@@ -251,13 +255,12 @@ impl Estimate<'_> {
             let spacing = piece.kept.windows(2).next().map_or(1.0, |pair| (pair[1] - pair[0]) as f64 * piece.period);
             for &(j, place) in &unknown {
                 let at = |row: usize| start + row * n + j;
-                let predicted = |row: usize| {
-                    let a = equations.row(at(row));
-                    known[at(row)] + values.iter().map(|(place, x)| a[*place] * x).sum::<f64>()
+                let predicted: Vec<f64> = {
+                    let product = equations.product(&values);
+                    (0..samples).map(|row| known[at(row)] + product(at(row))).collect()
                 };
-                let slopes = slopes(&(0..samples).map(predicted).collect::<Vec<_>>(), spacing);
-                for (row, slope) in slopes.into_iter().enumerate() {
-                    equations.a[at(row) * equations.columns + place] = -slope;
+                for (row, slope) in slopes(&predicted, spacing).into_iter().enumerate() {
+                    *equations.at_mut(at(row), place) = -slope;
                 }
             }
             start += n * samples;
@@ -271,6 +274,7 @@ impl Estimate<'_> {
         let n = self.arm.dof();
         let sums = Sums::new(&equations, &self.active);
         let weights = self.even_weights(&equations);
+        let fixed = equations.product(&self.fixed);
         let mut grams = sums.grams(&weights, n, |k| equations.rows[k].joint);
         for j in 0..n {
             let rows = sums.rows(j);
@@ -279,7 +283,6 @@ impl Estimate<'_> {
                 continue;
             }
             // What is known of a torque.
-            let fixed = |k: usize| self.fixed.iter().map(|(place, value)| equations.row(k)[*place] * value).sum::<f64>();
             let known: Vec<f64> = rows.iter().map(|&k| known[k] + fixed(k)).collect();
             let weights: Vec<f64> = rows.iter().map(|&k| weights[k]).collect();
             let with = |delay: f64| self.with_delay(&sums, &grams[j], j, delay, &known, &weights);

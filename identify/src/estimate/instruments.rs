@@ -12,7 +12,7 @@
 use nalgebra::{DMatrix, DVector};
 
 use crate::estimate::{Column, Estimate};
-use crate::fit::{block_length, reach, scores, solve, Equations, Gram, Solution, Sums};
+use crate::fit::{block_length, reach, scores, solve, Equations, Gram, Pattern, Solution, Sums};
 use crate::signal::LowPass;
 
 impl Estimate<'_> {
@@ -22,34 +22,36 @@ impl Estimate<'_> {
         let pieces = self.along_reference?;
         let mut along = Estimate { pieces, along_reference: None, ..self.clone() };
         along.renew_sizes();
-        let (instruments, _) = along.equations(None);
+        let (instruments, _) = along.equations_with_delays(true);
         let is_dry = |place: &usize| matches!(self.columns[*place], Column::Friction(_, _, term) if term.is_dry());
         for &place in self.active.iter().filter(|place| is_dry(place)) {
             for k in 0..equations.rows.len() {
-                equations.a[k * equations.columns + place] = instruments.row(k)[place];
+                if equations.pattern(k).entry(place).is_some() {
+                    *equations.at_mut(k, place) = instruments.at(k, place);
+                }
             }
         }
         let n = self.active.len();
         let gram = Sums::new(&instruments, &self.active).gram(&self.weights);
         let mut mixed = DMatrix::zeros(n, n);
         for (k, &weight) in self.weights.iter().enumerate().filter(|(_, weight)| **weight > 0.0) {
-            let (z, a) = (instruments.row(k), equations.row(k));
-            let a: Vec<(usize, f64)> = (0..n).map(|j| (j, a[self.active[j]])).filter(|(_, a)| *a != 0.0).collect();
+            let a: Vec<(usize, f64)> = (0..n).map(|j| (j, equations.at(k, self.active[j]))).filter(|(_, a)| *a != 0.0).collect();
             for i in 0..n {
-                let z = weight * z[self.active[i]];
+                let z = weight * instruments.at(k, self.active[i]);
                 if z != 0.0 {
                     a.iter().for_each(|(j, a)| mixed[(i, *j)] += z * a);
                 }
             }
         }
         let by = solve(&gram, &DVector::zeros(n)).inverse * mixed;
-        let mut projected = equations.clone();
-        for k in 0..equations.rows.len() {
-            let z = instruments.row(k);
-            let z = DVector::from_fn(n, |i, _| z[self.active[i]]);
-            let a = by.tr_mul(&z);
-            let row = &mut projected.a[k * equations.columns..(k + 1) * equations.columns];
-            self.active.iter().zip(a.iter()).for_each(|(&place, a)| row[place] = *a);
+        // Behind the projection every row has all active columns. Those of gains are 0.
+        let (rows, gains) = (equations.rows.len(), (0..self.arm.dof()).map(|j| self.place(Column::Gain(j))));
+        let pattern = Pattern::new(self.active.iter().copied().chain(gains).collect());
+        let entries = rows * pattern.places.len();
+        let mut projected = Equations::new(equations.columns, vec![pattern], rows, entries);
+        for (k, row) in equations.rows.iter().enumerate() {
+            let z = DVector::from_fn(n, |i, _| instruments.at(k, self.active[i]));
+            projected.push(*row, equations.b[k], 0)[..n].copy_from_slice(by.tr_mul(&z).as_slice());
         }
         Some(projected)
     }
@@ -94,7 +96,7 @@ impl Estimate<'_> {
     /// The same equations behind a low pass of half the cutoff. Rows whose neighbours within a period of the cutoff do not count do not, nor do
     /// those near the ends of a piece.
     fn at_half_the_cutoff(&self, equations: &Equations, cutoff: f64) -> Equations {
-        let (n, columns) = (self.arm.dof(), equations.columns);
+        let n = self.arm.dof();
         let mut half = equations.clone();
         let mut start = 0;
         for piece in self.pieces {
@@ -105,9 +107,9 @@ impl Estimate<'_> {
             for j in 0..n {
                 let at = |row: usize| start + row * n + j;
                 let filtered = |of: &dyn Fn(usize) -> f64| filter.both_ways(&(0..samples).map(of).collect::<Vec<_>>());
-                for &place in self.active.iter().filter(|&&place| (0..samples).any(|row| equations.row(at(row))[place] != 0.0)) {
-                    let column = filtered(&|row| equations.row(at(row))[place]);
-                    column.iter().enumerate().for_each(|(row, x)| half.a[at(row) * columns + place] = *x);
+                for &place in self.active.iter().filter(|&&place| (0..samples).any(|row| equations.at(at(row), place) != 0.0)) {
+                    let column = filtered(&|row| equations.at(at(row), place));
+                    column.iter().enumerate().for_each(|(row, x)| *half.at_mut(at(row), place) = *x);
                 }
                 let b = filtered(&|row| equations.b[at(row)]);
                 b.iter().enumerate().for_each(|(row, x)| half.b[at(row)] = *x);

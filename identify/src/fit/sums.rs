@@ -1,11 +1,11 @@
 //! Sums over rows: Gram matrices and residuals of the same equations for many weights.
 //!
-//! The rows of a joint are gathered once, without the columns that are 0 in all of them and followed by the right-hand side.
+//! The rows of a joint are gathered once, with the columns of their patterns, followed by the right-hand side.
 //! A sum goes over tiles of 4 x 4 entries, which stay in registers while a block of rows passes.
 
 use nalgebra::DVector;
 
-use super::{Equations, Gram};
+use super::{Equations, Gram, Pattern};
 
 /// Entries of a tile in a line.
 const LANES: usize = 4;
@@ -20,7 +20,7 @@ type Panel = [Lanes; BLOCK];
 /// The rows of a joint.
 #[derive(Clone, Debug, Default)]
 struct Gathered {
-    /// The columns that are not 0, by their places among the columns of the sums.
+    /// The columns of their patterns, by their places among the columns of the sums.
     columns: Vec<usize>,
     /// The rows of the equations.
     rows: Vec<usize>,
@@ -43,21 +43,33 @@ impl Sums {
     pub fn new(equations: &Equations, columns: &[usize]) -> Sums {
         let joints = equations.rows.iter().map(|row| row.joint + 1).max().unwrap_or(0);
         let mut all = vec![Gathered::default(); joints];
-        let mut filled = vec![vec![false; equations.columns]; joints];
+        let mut patterns = vec![vec![false; equations.patterns.len()]; joints];
         for (k, row) in equations.rows.iter().enumerate() {
             all[row.joint].rows.push(k);
-            filled[row.joint].iter_mut().zip(equations.row(k)).for_each(|(filled, x)| *filled |= *x != 0.0);
+            patterns[row.joint][equations.starts[k].0] = true;
         }
-        for (of, filled) in all.iter_mut().zip(&filled) {
-            of.columns = (0..columns.len()).filter(|&place| filled[columns[place]]).collect();
+        for (of, is_there) in all.iter_mut().zip(&patterns) {
+            let patterns = || equations.patterns.iter().zip(is_there).filter(|(_, is_there)| **is_there);
+            let is_filled = |place: usize| patterns().any(|(pattern, _)| pattern.entry(place).is_some());
+            of.columns = (0..columns.len()).filter(|&place| is_filled(columns[place])).collect();
             of.width = (of.columns.len() + 1).div_ceil(LANES);
             of.panels = vec![[[0.0; LANES]; BLOCK]; of.width * of.rows.len().div_ceil(BLOCK)];
-            let places: Vec<usize> = of.columns.iter().map(|&place| columns[place]).collect();
+            // Where entries of the first row of a block go, by pattern; those of the next are beside them.
+            let start = |i: usize| i / LANES * BLOCK * LANES + i % LANES;
+            let places = |pattern: &Pattern| -> Vec<(usize, usize)> {
+                let entry = |(i, &place): (usize, &usize)| Some((start(i), pattern.entry(columns[place])?));
+                of.columns.iter().enumerate().filter_map(entry).collect()
+            };
+            let places: Vec<Vec<(usize, usize)>> = equations.patterns.iter().map(places).collect();
+            let last = start(of.columns.len());
             for (rows, block) in of.rows.chunks(BLOCK).zip(of.panels.chunks_exact_mut(of.width)) {
+                let block = block.as_flattened_mut().as_flattened_mut();
                 for (r, &k) in rows.iter().enumerate() {
                     let row = equations.row(k);
-                    let entries = places.iter().map(|&place| row[place]).chain(std::iter::once(equations.b[k]));
-                    entries.enumerate().for_each(|(i, x)| block[i / LANES][r][i % LANES] = x);
+                    for &(start, entry) in &places[equations.starts[k].0] {
+                        block[start + LANES * r] = row[entry];
+                    }
+                    block[last + LANES * r] = equations.b[k];
                 }
             }
         }
@@ -196,7 +208,7 @@ fn add(tiles: &mut [[Lanes; LANES]], left: &[Panel], right: &[Panel]) {
 mod tests {
     use nalgebra::DVector;
 
-    use super::{Equations, Sums};
+    use super::{Equations, Pattern, Sums};
     use crate::fit::Row;
 
     /// Sums of small whole numbers are exact in any order: they equal the definition, for every class and joint.
@@ -208,19 +220,19 @@ mod tests {
             state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
             ((state >> 40) % 9) as f64 - 4.0
         };
-        let mut equations = Equations { columns, ..Equations::default() };
+        // Column 3 is 0 throughout, joint 1 has the first five alone; the other rows have two patterns.
+        let patterns = [(0..5).collect(), (0..columns).collect(), (0..columns).filter(|column| *column != 7).collect()];
+        let mut equations = Equations::new(columns, patterns.into_iter().map(Pattern::new).collect(), count, count * columns);
         for k in 0..count {
-            // Column 3 is 0 throughout, joint 1 has the first five alone.
             let joint = k % joints;
-            let is_there = |column: usize| column != 3 && (joint != 1 || column < 5);
-            equations.a.extend((0..columns).map(|column| if is_there(column) { whole() } else { 0.0 }));
-            equations.b.push(whole());
-            equations.rows.push(Row { joint, log: 0, time: k as f64, counts: true });
+            let pattern = if joint == 1 { 0 } else { 1 + k / 100 };
+            let entries = equations.push(Row { joint, log: 0, time: k as f64, counts: true }, whole(), pattern);
+            entries.iter_mut().enumerate().filter(|(column, _)| *column != 3).for_each(|(_, x)| *x = whole());
         }
         let weights: Vec<f64> = (0..count).map(|_| whole().abs()).collect();
         let chosen = [9, 0, 3, 2, 7, 10];
         let (sums, class) = (Sums::new(&equations, &chosen), |k: usize| (k / 50) % 2);
-        let at = |k: usize, place: usize| equations.row(k)[chosen[place]];
+        let at = |k: usize, place: usize| equations.at(k, chosen[place]);
         for (this, gram) in sums.grams(&weights, 2, class).iter().enumerate() {
             let sum =
                 |of: &dyn Fn(usize) -> f64| -> f64 { (0..count).filter(|&k| class(k) == this).map(|k| weights[k] * of(k)).sum() };

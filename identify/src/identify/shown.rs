@@ -23,6 +23,16 @@ pub(super) struct Unshown {
     pub(super) of_locked: BTreeSet<String>,
 }
 
+impl Unshown {
+    /// What the file keeps since joints are locked, in words.
+    pub(super) fn kept(&self, without: &[String]) -> Option<String> {
+        let names: Vec<&str> = self.of_locked.iter().map(String::as_str).collect();
+        let (locked, names) = (without.join(", "), names.join(", "));
+        (!self.of_locked.is_empty())
+            .then(|| format!("without {locked}, the logs do not show {names} in full: they keep of the file what is missing"))
+    }
+}
+
 /// Directions that the logs do not show.
 pub(super) fn unshown(estimate: &Estimate<'_>, solution: &Solution, matrix: &DMatrix<f64>, is_locked: bool) -> Unshown {
     let arm = estimate.arm;

@@ -144,12 +144,13 @@ impl Trial<'_> {
     /// Weighted residuals, row by row.
     pub(super) fn residuals(&self, signs: &[f64], x: &DVector<f64>) -> Vec<f64> {
         let (equations, n) = (&self.sides.equations, self.order.len());
+        let values: Vec<(usize, f64)> = self.sides.active.iter().copied().zip(x.iter().copied()).collect();
+        let model = equations.product(&values);
         (0..equations.rows.len())
             .map(|k| {
-                let (row, j) = (equations.row(k), k % n);
-                let model: f64 = self.sides.active.iter().zip(x.iter()).map(|(&place, x)| row[place] * x).sum();
+                let j = k % n;
                 let torque = signs[j] * equations.b[k - j + self.order[j]];
-                (torque - model) * (self.sides.counts[k] * self.sides.weight(&self.order, j)).sqrt()
+                (torque - model(k)) * (self.sides.counts[k] * self.sides.weight(&self.order, j)).sqrt()
             })
             .collect()
     }
