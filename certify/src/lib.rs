@@ -15,12 +15,15 @@
 #[cfg(not(test))]
 mod executed;
 
+use armgen_codegen::derive::parameters::nominal;
 use armgen_codegen::diagnostic::{Colour, Diagnostics};
 use armgen_codegen::emit::c::print_solver;
 use armgen_codegen::emit::rust::print_inverse_kinematics;
 use armgen_codegen::emit::{Language, Notes, Origin};
+use armgen_codegen::exact::Number;
 use armgen_codegen::inverse_kinematics as construction;
-use armgen_codegen::manipulator::Manipulator;
+use armgen_codegen::kinds::JointKind;
+use armgen_codegen::manipulator::{Joint, Manipulator, Placement};
 use armgen_codegen::pass::{Pass, Passes};
 use armgen_codegen::schedule::Options;
 use armgen_codegen::source::Source;
@@ -28,6 +31,7 @@ use armgen_codegen::{validate, Generated, Scalar};
 use armgen_verify::certificate::Certificate;
 use armgen_verify::checker::Effort;
 use armgen_verify::claims::Claims;
+use armgen_verify::companion::Extent;
 use armgen_verify::enclosure::Float;
 use armgen_verify::inverse_kinematics::{self, Proposal, Values};
 use armgen_verify::reader::{Module, ModuleText};
@@ -103,13 +107,45 @@ pub fn companion(generated: &Generated, import: &str) -> Result<String, String> 
 
 /// The final part of the companion for emitted inverse kinematics: see [`companion::of_inverse_kinematics`].
 pub fn companion_of_inverse_kinematics(generated: &Generated) -> Result<String, String> {
-    Ok(companion::of_inverse_kinematics(&Module::read(&generated.module)?))
+    let extent = generated.solvers().next().map_or_else(Extent::default, |solver| extent(&solver.solved().arm));
+    Ok(companion::of_inverse_kinematics(&Module::read(&generated.module)?, extent))
+}
+
+/// The sizes of an arm for the bound of inverse kinematics.
+fn extent(arm: &Manipulator) -> Extent {
+    let origin = |frame: &Placement| frame.translation.each_ref().map(|length| nominal(arm, length));
+    let is_beside = |[x, y]: &[Number; 2]| !(x.is_zero() && y.is_zero());
+    let turns = |joint: &Joint| joint.kind == JointKind::Revolute;
+    let beside = arm.joints.iter().filter(|joint| turns(joint)).filter_map(|joint| {
+        let [x, y, _] = origin(&joint.link_frame);
+        let of_base = || std::array::from_fn(|_| Number::zero());
+        let before = joint.parent.map_or_else(of_base, |parent| origin(&arm.joints[parent.index()].link_frame));
+        let place = origin(&joint.placement);
+        // Across the axis, in the joint frame.
+        let across = |axis: usize| {
+            (0..3).fold(Number::zero(), |sum, k| {
+                let along = &before[k] - &place[k];
+                sum.plus(&joint.placement.rotation[k][axis].times(&along))
+            })
+        };
+        (is_beside(&[x.clone(), y.clone()]) && is_beside(&[across(0), across(1)])).then(|| x.to_f64().hypot(y.to_f64()))
+    });
+    let change = |joint: usize| match &arm.coupling {
+        None => 1.0,
+        Some(coupling) => coupling.variables[joint].factors.iter().map(|(_, factor)| factor.to_f64().abs()).sum(),
+    };
+    let path = arm.path_to(arm.tip.index());
+    let of = |turning: bool| {
+        let those = path.iter().filter(|&&joint| turns(&arm.joints[joint]) == turning);
+        1.000_001 * those.map(|&joint| change(joint)).sum::<f64>()
+    };
+    Extent { lever: beside.fold(0.0, f64::max), turning: of(true), sliding: of(false) }
 }
 
 /// Verifies a module of inverse kinematics against its description, and counts solutions at this number of rational poses.
 pub fn verify_inverse_kinematics(source: &Source, text: &str, poses: usize) -> inverse_kinematics::Report {
-    match valid(source) {
-        Ok(manipulator) => inverse_kinematics::verify(source, text, &proposal(source, &manipulator, text), poses),
+    match valid(source).and_then(|manipulator| proposal(source, &manipulator, text)) {
+        Ok(proposal) => inverse_kinematics::verify(source, text, &proposal, poses),
         Err(faults) => inverse_kinematics::Report {
             input: hash(source.text()),
             output: hash(text),
@@ -119,16 +155,22 @@ pub fn verify_inverse_kinematics(source: &Source, text: &str, poses: usize) -> i
     }
 }
 
-/// The generator's exact values and texts for inverse kinematics, in the language and scalar of `text`.
-pub fn proposal(source: &Source, manipulator: &Manipulator, text: &str) -> Proposal {
-    let found = construction::of(manipulator);
+/// The generator's exact values and texts for inverse kinematics, in the language and scalar of `text`, of the end effector that it names.
+///
+/// # Errors
+/// An end effector that the arm does not have.
+pub fn proposal(source: &Source, manipulator: &Manipulator, text: &str) -> Result<Proposal, String> {
+    let solved = match inverse_kinematics::end_effector(manipulator, text)? {
+        Some(tip) => construction::Solved::at(manipulator, tip),
+        None => construction::Solved::all(manipulator).swap_remove(0),
+    };
     let (scalar, origin) = (inverse_kinematics::scalar_of(text), Origin::of(source));
-    let c = inverse_kinematics::is_c(text).then(|| print_solver(manipulator, scalar, &found, &origin));
-    Proposal {
-        rust: print_inverse_kinematics(manipulator, scalar, &found, &origin),
+    let c = inverse_kinematics::is_c(text).then(|| print_solver(&solved, scalar, &origin));
+    Ok(Proposal {
+        rust: print_inverse_kinematics(&solved, scalar, &origin),
         c,
-        values: found.as_ref().map(values).map_err(Clone::clone),
-    }
+        values: solved.found.as_ref().map(values).map_err(Clone::clone),
+    })
 }
 
 /// The exact values of a construction, in the order of its text.

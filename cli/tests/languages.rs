@@ -232,11 +232,37 @@ fn a_gripper_goes_from_a_urdf_to_torques() {
     assert!(back.contains("    follows: {left_finger: 1}\n"), "{back}");
 }
 
+/// The description with the lines of the page for inverse kinematics has it of both hands: verified, named, and as the program of the page prints it.
+fn postures_of_hands(folder: &PathBuf, page: &str) {
+    let description = fs::read_to_string(folder.join("two_arms.yaml")).expect("the description");
+    let lines = page.rsplit_once("```yaml\n").and_then(|(_, rest)| rest.split("```").next()).expect("the lines");
+    let of_hand = |text: String, joint: &str| text.replace(joint, &format!("{joint}{lines}"));
+    let text = ["    joint: left_3\n", "    joint: right_3\n"].into_iter().fold(description, of_hand);
+    fs::write(folder.join("hands.yaml"), text).expect("the file");
+    let said = check(folder, &["generate", "hands.yaml", "--language", "c", "--out", "two_arms.h", "--ik", "--verify"], 0);
+    assert_eq!(said.matches("rational poses proved").count(), 2, "{said}");
+    for hand in ["left_hand", "right_hand"] {
+        check(folder, &["verify", "hands.yaml", &format!("two_arms_{hand}_ik.h")], 0);
+        check(folder, &["show", "hands.yaml", &format!("{hand}_inverse_kinematics")], 0);
+    }
+    let program = page.rsplit_once("```c\n").and_then(|(_, rest)| rest.split("```").next()).expect("the program");
+    fs::write(folder.join("postures.c"), program).expect("the file");
+    let mut compiler = Command::new("cc");
+    compiler.args(["-O2", "-Wall", "-Wextra", "-Werror", "postures.c", "-lm", "-o", "postures"]).current_dir(folder);
+    let Ok(compiled) = compiler.output() else { return };
+    assert!(compiled.status.success(), "{}", String::from_utf8_lossy(&compiled.stderr));
+    let ran = Command::new(folder.join("postures")).output().expect("it runs");
+    let printed = String::from_utf8_lossy(&ran.stdout);
+    let places: Vec<&str> = printed.lines().filter_map(|line| line.split("hand at").nth(1)).collect();
+    assert!(ran.status.success() && places.len() > 1 && places.iter().all(|place| *place == places[0]), "{printed}");
+}
+
 #[test]
 #[ignore = "wide"]
 fn two_arms_go_from_a_urdf_to_torques() {
     let (page, urdf) = (include_str!("../../docs/two-arms.md"), include_str!("../../tests/data/trees/two_arms.urdf"));
     let folder = run_tutorial("two_arms", page, urdf, 5);
+    postures_of_hands(&folder, page);
     check(&folder, &["export", "two_arms.yaml", "--format", "urdf", "--out", "back.urdf"], 0);
     check(&folder, &["import", "back.urdf", "--tip", "left=left_hand", "--tip", "right=right_hand", "--out", "back.yaml"], 0);
     check(&folder, &["show", "back.yaml", "left_direct_kinematics", "right_operational_inertia"], 0);

@@ -164,7 +164,8 @@ impl Robot {
 
     /// Also writes `robot_ik.rs`: all joint variables that reach a pose. Include it in a module `robot_ik`, next to the module that includes
     /// `robot.rs` and `robot_runtime.rs`. The implementation of the runtime's trait `InverseKinematics` uses this path. For an arm without a
-    /// closed-form construction the file only holds a comment with the reason, and the trait is not implemented.
+    /// construction the file only holds a comment with the reason, and the trait is not implemented. Named end effectors have a file each,
+    /// `robot_left_ik.rs` of `left`, and no trait.
     #[must_use]
     pub fn inverse_kinematics(mut self) -> Robot {
         self.inverse_kinematics = true;
@@ -233,10 +234,13 @@ impl Robot {
         let mut others = Vec::new();
         let mut runtime = generated.runtime.clone();
         if self.inverse_kinematics {
-            others.push((format!("{stem}_ik.rs"), generated.inverse_kinematics()));
             runtime = generated.runtime_with_inverse_kinematics(&ik);
-            if let (true, Some(face)) = (self.c_abi, generated.inverse_kinematics_for_c()) {
-                others.extend([(format!("{stem}_ik.h"), face.header), (format!("{stem}_ik_c.rs"), face.wrappers)]);
+            for solver in generated.solvers() {
+                let stem = format!("{stem}{}_ik", solver.infix());
+                others.push((format!("{stem}.rs"), solver.text()));
+                if let (true, Some(face)) = (self.c_abi, solver.for_c()) {
+                    others.extend([(format!("{stem}.h"), face.header), (format!("{stem}_c.rs"), face.wrappers)]);
+                }
             }
         }
         if let Some(face) = self.c_abi.then(|| generated.laws_for_c(&format!("{stem}.h"))).flatten() {

@@ -30,6 +30,69 @@ pub use frame::Frame;
 use chain::Chain;
 use jacobian::Jacobian;
 
+/// An end effector and how its postures are found.
+#[derive(Clone, Debug)]
+pub struct Solved {
+    /// Its name; `None` where the arm has one end effector without a name.
+    pub tip: Option<String>,
+    /// The arm; of a named end effector the part that moves it, whose coordinates are those of the postures.
+    pub arm: Manipulator,
+    /// The construction, or the reason why there is none.
+    pub found: Result<InverseKinematics, String>,
+}
+
+impl Solved {
+    /// All end effectors, in the order of the description.
+    pub fn all(manipulator: &Manipulator) -> Vec<Solved> {
+        match manipulator.tips.len() {
+            0 => vec![Solved::of(manipulator.clone(), None)],
+            count => (0..count).map(|tip| Solved::at(manipulator, tip)).collect(),
+        }
+    }
+
+    /// One of the named end effectors.
+    pub fn at(manipulator: &Manipulator, tip: usize) -> Solved {
+        Solved::of(manipulator.arm_to(tip), Some(manipulator.tips[tip].name.clone()))
+    }
+
+    fn of(arm: Manipulator, tip: Option<String>) -> Solved {
+        Solved { found: of(&arm), arm, tip }
+    }
+
+    /// `of left` behind a noun; nothing where the end effector has no name.
+    pub fn of_it(&self) -> String {
+        self.tip.as_ref().map_or_else(String::new, |tip| format!(" of {tip}"))
+    }
+
+    /// Its name where functions have their names: `left_inverse_kinematics` of `left`.
+    pub fn name(&self) -> String {
+        let prefix = self.tip.as_ref().map_or_else(String::new, |tip| tip.to_ascii_lowercase() + "_");
+        prefix + "inverse_kinematics"
+    }
+
+    /// Class, steps and singular postures, or why there are none, as lines of text.
+    pub fn text(&self) -> String {
+        let name = self.name();
+        match &self.found {
+            Ok(found) => found.text().replacen("inverse_kinematics", &name, 1),
+            Err(reason) => format!("{name}: none, {reason}\n"),
+        }
+    }
+
+    /// Whether the description asks for it.
+    pub fn is_asked_for(&self) -> bool {
+        let asked = &self.arm.inverse_kinematics;
+        asked.target.is_some() || asked.given.is_some()
+    }
+
+    /// The line at the head of its module that names the end effector and its coordinates; none where it has no name.
+    pub fn head(&self) -> Option<String> {
+        let tip = self.tip.as_ref()?;
+        let names: Vec<&str> = self.arm.coordinates().iter().map(|of| of.joint.name.as_str()).collect();
+        Some(format!("End effector: {tip}. Entries of q: {}.", names.join(", ")))
+    }
+}
+
 /// Data of an arm from which all its solutions follow.
 #[derive(Clone, Debug)]
 pub struct InverseKinematics {
@@ -98,10 +161,7 @@ pub enum Construction {
 /// How all solutions of an arm are found, or why there is no function for that.
 pub fn of(manipulator: &Manipulator) -> Result<InverseKinematics, String> {
     if !manipulator.tips.is_empty() {
-        return Err(
-            "it is not solved yet for an arm with several end effectors: describe the chain to one of them as an arm of its own"
-                .into(),
-        );
+        return Err("an arm with several end effectors has it of each of them".into());
     }
     if manipulator.coupling.is_some() {
         let coordinates = Coordinates::of(manipulator)?;

@@ -55,7 +55,7 @@ use diagnostic::{Diagnostic, Diagnostics};
 use emit::c::CFace;
 use emit::{Language, Notes, Origin};
 use exact::Number;
-use inverse_kinematics::InverseKinematics;
+use inverse_kinematics::Solved;
 pub use kinds::Scalar;
 use manipulator::Manipulator;
 pub use pass::{Pass, Passes};
@@ -86,8 +86,8 @@ pub struct Generated {
     notes: Notes,
     /// The arm of these equations.
     manipulator: Manipulator,
-    /// Its construction, computed at the first use.
-    construction: OnceLock<Result<InverseKinematics, String>>,
+    /// Its end effectors with their constructions, found at the first use.
+    solved: OnceLock<Vec<Solved>>,
 }
 
 impl Generated {
@@ -128,37 +128,34 @@ impl Generated {
         }
     }
 
-    /// The module of inverse kinematics, `robot_ik.rs`: all joint variables that reach a pose. It is self-contained, in a module
-    /// of its own. For an arm without a construction it holds a comment with the reason.
+    /// The end effectors with their inverse kinematics: one, or those with names in the order of the description.
+    pub fn solvers(&self) -> impl Iterator<Item = Solver<'_>> {
+        let solved = self.solved.get_or_init(|| Solved::all(&self.manipulator));
+        solved.iter().map(|solved| Solver { solved, generated: self })
+    }
+
+    /// The module of inverse kinematics of the only end effector, or of the first one: [`Solver::text`].
     pub fn inverse_kinematics(&self) -> String {
-        emit::rust::print_inverse_kinematics(&self.manipulator, self.program.scalar, self.construction(), &self.origin)
+        self.solver().text()
     }
 
-    /// Why the arm has no inverse kinematics; none where it has.
-    pub fn no_inverse_kinematics(&self) -> Option<&str> {
-        self.construction().as_ref().err().map(String::as_str)
+    /// The same in C alone: [`Solver::in_c`].
+    pub fn inverse_kinematics_in_c(&self) -> Result<String, String> {
+        self.solver().in_c()
     }
 
-    /// Whether the description asks for inverse kinematics.
-    pub fn asks_for_inverse_kinematics(&self) -> bool {
-        self.manipulator.inverse_kinematics.target.is_some() || self.manipulator.inverse_kinematics.given.is_some()
-    }
-
-    /// Whether the arm has a construction, and one that asks for a pose alone.
-    pub fn has_inverse_kinematics_of_pose_alone(&self) -> bool {
-        self.construction().as_ref().is_ok_and(|found| found.redundancy.is_none())
+    fn solver(&self) -> Solver<'_> {
+        self.solvers().next().expect("an arm has an end effector")
     }
 
     /// `robot_runtime.rs` with the trait `InverseKinematics`, or `RedundantInverseKinematics` for a redundant arm. `ik` names the
-    /// sibling module of the robot's module that holds inverse kinematics. The trait is left out if the arm has no construction,
-    /// or the module lacks functions that the other traits need.
+    /// sibling module of the robot's module that holds inverse kinematics. The trait is left out if the arm has no construction or
+    /// several end effectors, or the module lacks functions that the other traits need.
     pub fn runtime_with_inverse_kinematics(&self, ik: &str) -> String {
-        self.runtime.clone() + &emit::rust::print_inverse_kinematics_trait(&self.program, self.construction(), ik)
-    }
-
-    /// The C interface of `robot_ik.rs`: `robot_ik.h`, and `robot_ik_c.rs` to be included next to it; `None` if the arm has no construction.
-    pub fn inverse_kinematics_for_c(&self) -> Option<CFace> {
-        emit::c::print_inverse_kinematics(&self.program, self.construction(), &self.origin)
+        let found = &self.solver().solved.found;
+        let has_one = self.manipulator.tips.is_empty();
+        let of_it = if has_one { emit::rust::print_inverse_kinematics_trait(&self.program, found, ik) } else { String::new() };
+        self.runtime.clone() + &of_it
     }
 
     /// Laws of the runtime for C, `robot_laws.h` and `robot_laws_c.rs`, to be included next to the module and its traits. `header`: the file of
@@ -166,26 +163,57 @@ impl Generated {
     pub fn laws_for_c(&self, header: &str) -> Option<CFace> {
         emit::c::print_laws(&self.program, &self.origin, header)
     }
+}
 
-    /// Inverse kinematics in C alone, `robot_ik.h`: the calls of the header of `inverse_kinematics_for_c`, with their bodies. For
-    /// an arm without a construction it holds a comment with the reason. An error is a fault of this program.
-    pub fn inverse_kinematics_in_c(&self) -> Result<String, String> {
-        emit::c::print_solver(&self.manipulator, self.program.scalar, self.construction(), &self.origin)
+/// Inverse kinematics of an end effector, in a module of its own.
+#[derive(Clone, Copy, Debug)]
+pub struct Solver<'a> {
+    solved: &'a Solved,
+    generated: &'a Generated,
+}
+
+impl Solver<'_> {
+    /// Part of the names of its files: `_left` of an end effector with this name, nothing of one without.
+    pub fn infix(&self) -> String {
+        self.solved.tip.as_ref().map_or_else(String::new, |tip| format!("_{}", tip.to_ascii_lowercase()))
     }
 
-    /// The end of `robot_test.rs`: the tests of inverse kinematics, whose module is in `file` of the same folder.
-    pub fn inverse_kinematics_test(&self, file: &str) -> String {
-        emit::rust::print_inverse_kinematics_test(&self.program, self.construction(), file)
+    /// The end effector and its construction.
+    #[doc(hidden)]
+    pub fn solved(&self) -> &Solved {
+        self.solved
     }
 
-    /// The program that tests inverse kinematics in C, `robot_ik_test.c`, with the names of both headers; none where the arm has no construction.
-    pub fn inverse_kinematics_test_in_c(&self, module: &str, solver: &str) -> Option<String> {
-        let found = self.construction().as_ref().ok()?;
-        Some(emit::c::print_solver_test(&self.program, found, [module, solver], &self.origin))
+    /// The module, `robot_ik.rs`: all joint variables that reach a pose. It is self-contained, in a module of its own. Without a construction
+    /// it holds a comment with the reason.
+    pub fn text(&self) -> String {
+        emit::rust::print_inverse_kinematics(self.solved, self.scalar(), &self.generated.origin)
     }
 
-    fn construction(&self) -> &Result<InverseKinematics, String> {
-        self.construction.get_or_init(|| inverse_kinematics::of(&self.manipulator))
+    /// The C interface of `robot_ik.rs`: `robot_ik.h`, and `robot_ik_c.rs` to be included next to it; `None` without a construction.
+    pub fn for_c(&self) -> Option<CFace> {
+        emit::c::print_inverse_kinematics(self.solved, self.scalar(), &self.generated.origin)
+    }
+
+    /// The same in C alone, `robot_ik.h`: the calls of the header of `for_c`, with their bodies. Without a construction it holds a
+    /// comment with the reason. An error is a fault of this program.
+    pub fn in_c(&self) -> Result<String, String> {
+        emit::c::print_solver(self.solved, self.scalar(), &self.generated.origin)
+    }
+
+    /// The end of `robot_test.rs` of an arm with one end effector: the tests of the module, which is in `file` of the same folder.
+    pub fn test(&self, file: &str) -> String {
+        emit::rust::print_inverse_kinematics_test(self.solved, self.scalar(), file)
+    }
+
+    /// The program that tests it in C, `robot_ik_test.c`, of an arm with one end effector, with the names of both headers; none without a
+    /// construction.
+    pub fn test_in_c(&self, module: &str, solver: &str) -> Option<String> {
+        emit::c::print_solver_test(self.solved, self.scalar(), [module, solver], &self.generated.origin)
+    }
+
+    fn scalar(&self) -> Scalar {
+        self.generated.program.scalar
     }
 }
 
@@ -230,6 +258,6 @@ pub fn printed(source: &Source, manipulator: Manipulator, module: Module) -> Gen
         origin,
         notes: Notes::default(),
         manipulator,
-        construction: OnceLock::new(),
+        solved: OnceLock::new(),
     }
 }

@@ -209,6 +209,26 @@ impl Coupling {
         own && offset.is_zero()
     }
 
+    /// That of some joints alone, whose variables follow no other ones; `None` where each of them has a coordinate of its own.
+    fn of_joints(&self, joints: &[usize]) -> Option<Coupling> {
+        let place = |joint: usize| joints.iter().position(|&of| of == joint);
+        let kept: Vec<usize> = (0..self.coordinates.len()).filter(|&a| place(self.coordinates[a]).is_some()).collect();
+        let variable = |&joint: &usize| {
+            let variable = self.variables[joint].clone();
+            let factors = variable
+                .factors
+                .into_iter()
+                .map(|(a, factor)| (kept.iter().position(|&of| of == a).expect("the coordinate of one of the joints"), factor));
+            JointVariable { factors: factors.collect(), ..variable }
+        };
+        (!joints.iter().all(|&joint| self.is_plain(joint))).then(|| Coupling {
+            coordinates: kept.iter().filter_map(|&a| place(self.coordinates[a])).collect(),
+            limits: kept.iter().map(|&a| self.limits[a].clone()).collect(),
+            variables: joints.iter().map(variable).collect(),
+            sums: Vec::new(),
+        })
+    }
+
     /// The angles of joints that functions compute, each once.
     pub fn computed(&self) -> Vec<ComputedAngle> {
         distinct(self.variables.iter())
@@ -520,6 +540,44 @@ impl Manipulator {
             task: chosen.task,
             inverse_kinematics: chosen.inverse_kinematics,
             ..self.clone()
+        }
+    }
+
+    /// The part that moves a named end effector, as an arm with this end effector alone: the joints from the base to it, and those whose
+    /// coordinates they follow. Its coordinates have the order of this arm's. It has neither motors nor a payload: its kinematics are meant.
+    #[must_use]
+    pub fn arm_to(&self, tip: usize) -> Manipulator {
+        let arm = self.at(tip);
+        let mut kept = vec![false; self.joints.len()];
+        let mut left = vec![arm.tip.index()];
+        while let Some(joint) = left.pop() {
+            if std::mem::replace(&mut kept[joint], true) {
+                continue;
+            }
+            left.extend(self.joints[joint].parent.map(LinkId::index));
+            if let Some(coupling) = &self.coupling {
+                left.extend(coupling.variables[joint].factors.iter().map(|(coordinate, _)| coupling.coordinates[*coordinate]));
+            }
+        }
+        let joints: Vec<usize> = (0..self.joints.len()).filter(|&joint| kept[joint]).collect();
+        let place = |joint: usize| joints.iter().position(|&of| of == joint);
+        let link = |of: LinkId| place(of.index()).map(|place| LinkId(place as u32));
+        let joint = |&index: &usize| {
+            let joint = self.joints[index].clone();
+            Joint { parent: joint.parent.and_then(link), motor: None, ..joint }
+        };
+        let given = arm.inverse_kinematics.given.and_then(|given| match given {
+            GivenBeside::Joint(joint) => link(joint).map(GivenBeside::Joint),
+            GivenBeside::Swivel => Some(given),
+        });
+        Manipulator {
+            name: format!("{}_{}", self.name, self.tips[tip].name),
+            joints: joints.iter().map(joint).collect(),
+            tip: link(arm.tip).expect("the end effector's own link"),
+            inverse_kinematics: Postures { given, ..arm.inverse_kinematics },
+            tips: Vec::new(),
+            coupling: self.coupling.as_ref().and_then(|coupling| coupling.of_joints(&joints)),
+            ..arm
         }
     }
 

@@ -66,6 +66,12 @@ pub(crate) fn tool(manipulator: &Manipulator) -> Value {
     json!(frame(manipulator, &manipulator.tool.frame))
 }
 
+/// The named end effectors but the first one: their names, the links that carry them, from 0, and their frames there.
+pub(crate) fn further_ends(manipulator: &Manipulator) -> Vec<Value> {
+    let further = manipulator.tips.iter().skip(1);
+    further.map(|tip| json!({ "name": tip.name, "link": tip.joint.0, "tool": frame(manipulator, &tip.tool.frame) })).collect()
+}
+
 /// Total mass of links and rotors, kg.
 pub(crate) fn total_mass(manipulator: &Manipulator) -> f64 {
     let rotors = manipulator.joints.iter().filter_map(|joint| joint.motor.as_ref()).map(|motor| &motor.mass);

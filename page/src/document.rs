@@ -119,8 +119,12 @@ fn header(parts: &Parts<'_>) -> String {
         Convention::Modified => "modified DH",
         Convention::Urdf => "rows of a URDF",
     };
+    // The page has the first of several end effectors.
+    let tips = parts.description.tips.as_ref().map_or(&[][..], |tips| &tips.value);
+    let end = tips.first().and_then(|tip| tip.name.as_ref()).filter(|_| tips.len() > 1);
+    let end = end.map_or(String::new(), |name| format!(", end effector e: {}, the first of {}", escape(&name.value), tips.len()));
     format!(
-        "<header>\n<h1>{}</h1>\n<p>{joints} joint{}{coordinates}, {rows}, {} kg</p>\n<div class=\"controls\">\n\
+        "<header>\n<h1>{}</h1>\n<p>{joints} joint{}{coordinates}, {rows}, {} kg{end}</p>\n<div class=\"controls\">\n\
          <button type=\"button\" id=\"angle-unit\">angles: rad</button>\n\
          <button type=\"button\" id=\"length-unit\">lengths: m</button>\n\
          <button type=\"button\" id=\"theme\">dark theme</button>\n<button type=\"button\" id=\"unfold\" title=\"all that is folded in, but runs; of long equations as many as can be printed\">open all</button>\n<button type=\"button\" id=\"print\">print</button>\n</div>\n<p id=\"unfold-said\" class=\"small\" role=\"status\"></p>\n</header>\n",

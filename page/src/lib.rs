@@ -91,6 +91,7 @@ pub fn page(source: &Source, runs: &[Run]) -> Result<(Option<String>, Diagnostic
         let fits = run.log.as_ref().map_or(Ok(()), |log| log.fits(&joints));
         fits.map_err(|reason| Misfit { run: run.name.clone(), reason })?;
     }
+    let ends = bodies::further_ends(&manipulator);
     let model = Model::new(manipulator.with_one_end_effector());
     let module = match derived(&model, &places, Selection::ALL, &mut diagnostics) {
         Some(module) => module,
@@ -98,7 +99,7 @@ pub fn page(source: &Source, runs: &[Run]) -> Result<(Option<String>, Diagnostic
     };
     let cost = cost::table(&module);
     let equations = equations::Equations::new(&model);
-    let whole = Whole { cost: &cost, equations: &equations.section(), data: Some(equations.data()), nonce: None };
+    let whole = Whole { cost: &cost, equations: &equations.section(), data: Some(equations.data()), ends, nonce: None };
     let page = whole.page(source, &model, module, &equations.determinant, runs, &diagnostics);
     Ok((Some(page), diagnostics))
 }
@@ -109,10 +110,11 @@ pub fn page(source: &Source, runs: &[Run]) -> Result<(Option<String>, Diagnostic
 pub fn picture(source: &Source, nonce: &str) -> (Option<String>, Diagnostics) {
     let (valid, mut diagnostics) = validate::read_for(source, Scalar::F64);
     let Some((manipulator, places)) = valid else { return (None, diagnostics) };
+    let ends = bodies::further_ends(&manipulator);
     let model = Model::new(manipulator.with_one_end_effector());
     let functions = Selection::named(FUNCTIONS).expect("names of the catalogue");
     let Some(module) = derived(&model, &places, functions, &mut diagnostics) else { return (None, diagnostics) };
-    let whole = Whole { cost: document::LATER, equations: document::LATER, data: None, nonce: Some(nonce) };
+    let whole = Whole { cost: document::LATER, equations: document::LATER, data: None, ends, nonce: Some(nonce) };
     let page = whole.page(source, &model, module, &Determinant::without_common_factors(&model), &[], &diagnostics);
     (Some(page), diagnostics)
 }
@@ -140,6 +142,8 @@ struct Whole<'w> {
     cost: &'w str,
     equations: &'w str,
     data: Option<Value>,
+    /// The end effectors but the first one.
+    ends: Vec<Value>,
     nonce: Option<&'w str>,
 }
 
@@ -161,6 +165,9 @@ impl Whole<'_> {
         let bodies = bodies::bodies(&model.manipulator, &description, diagnostics);
         let mut data = data(&model.manipulator, &description, &rows, bodies, &module, &left_out, determinant, runs);
         data["equations"] = self.data.unwrap_or_default();
+        if !self.ends.is_empty() {
+            data["ends"] = self.ends.into();
+        }
         let script = script::script(&text, !runs.is_empty());
         document::document(&document::Parts {
             model,

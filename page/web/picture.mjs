@@ -6,7 +6,7 @@ import { byId, set, svg } from "./dom.mjs";
 import { exact, short, withUnit } from "./format.mjs";
 import { links, variables } from "./kinematics.mjs";
 import { box, settle } from "./labels.mjs";
-import { Arm, step, unit } from "./scene.mjs";
+import { Arm, endFrames, ends, step, unit } from "./scene.mjs";
 import { narrow, StickyPicture } from "./sticky_picture.mjs";
 import { Ball, Box, drawSolids } from "./solids.mjs";
 import { along, column, compose, identity, norm, origin, place, subtract } from "./vector.mjs";
@@ -36,7 +36,7 @@ export class Picture {
         }
         this.arm = new Arm(data);
         this.bodies = data.bodies.map((body) => bodySolids(body, data, this.arm.size)).filter((all) => all !== null);
-        const names = ["0", ...links(data).map((_, i) => String(i + 1)), "e"];
+        const names = ["0", ...links(data).map((_, i) => String(i + 1)), "e", ...ends(data).map(({ name }) => name)];
         this.frames = names.map((name) => frameElements(name));
         this.layers.frames.append(...this.frames.map((frame) => frame.element));
         /** Which row is drawn as on a sheet, from 0. @type {number | null} */
@@ -125,7 +125,7 @@ export class Picture {
         const side = ghosts.some(isBefore) ? "after" : "before";
         if (this.side !== side) this.layers.links[side](this.layers.ghosts);
         this.side = side;
-        this.drawFrames([identity(), ...frames, end]);
+        this.drawFrames([identity(), ...frames, end, ...endFrames(this.data, frames)]);
         this.drawBodies();
         this.drawGrid();
         this.drawGravity();

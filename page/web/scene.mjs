@@ -18,6 +18,16 @@ function rows(data) {
     return links(data);
 }
 
+/** The end effectors but the first one. @param {any} data @returns {{name: string, link: number, tool: number[][]}[]} */
+export function ends(data) {
+    return data.ends ?? [];
+}
+
+/** Their frames. @param {any} data @param {number[][][]} frames those of the links, from 1 */
+export function endFrames(data, frames) {
+    return ends(data).map(({ link, tool }) => compose(frames[link], tool));
+}
+
 /** How long an arm is, m: the sum of the lengths of its rows and of what its slides can add. @param {any} data */
 export function size(data) {
     let length = 0;
@@ -70,9 +80,11 @@ export class Arm {
             };
         });
         this.tool = new Cylinder(link * 0.7, `link ${kind}`);
+        /** The links to the end effectors but the first one. @type {Cylinder[]} */
+        this.tools = ends(data).map(() => new Cylinder(link * 0.7, `link ${kind}`));
         this.base = new Cylinder(this.size * 0.06, `base ${kind}`);
         /** @type {(Ball | Box | Cylinder)[]} */
-        this.solids = [this.base, this.tool];
+        this.solids = [this.base, this.tool, ...this.tools];
         for (const row of this.rows) {
             this.solids.push(...row.segments, row.ball, row.joint);
             if (row.rail) this.solids.push(row.rail);
@@ -118,6 +130,10 @@ export class Arm {
         });
         this.tool.between(origin(frames[data.tip]), origin(end));
         this.points.push(origin(end));
+        endFrames(data, frames).forEach((frame, k) => {
+            this.tools[k].between(origin(frames[ends(data)[k].link]), origin(frame));
+            this.points.push(origin(frame));
+        });
     }
 }
 

@@ -89,12 +89,12 @@ fn check(robot: &str, scalar: Scalar, folder: &str) {
     write("src/robot.rs", &generated.module);
     write("src/robot_c.rs", &generated.c.wrappers);
     write("robot.h", &generated.c.header);
-    let inverse_kinematics = generated.inverse_kinematics_for_c().expect("the SCARA has a construction");
+    let inverse_kinematics = generated.solvers().next().expect("an end effector").for_c().expect("the SCARA has a construction");
     write("src/robot_ik.rs", &generated.inverse_kinematics());
     write("src/robot_ik_c.rs", &inverse_kinematics.wrappers);
     write("robot_ik.h", &inverse_kinematics.header);
     let panda7 = generate_of("panda7.yaml", scalar, Selection::named(["direct_kinematics"]).expect("a function"));
-    let redundant = panda7.inverse_kinematics_for_c().expect("the Panda has a construction");
+    let redundant = panda7.solvers().next().expect("an end effector").for_c().expect("the Panda has a construction");
     write("src/redundant_ik.rs", &panda7.inverse_kinematics());
     write("src/redundant_ik_c.rs", &redundant.wrappers);
     write("redundant_ik.h", &redundant.header);
@@ -245,7 +245,7 @@ fn macros(header: &str, own: &str) -> BTreeMap<String, String> {
 fn both_headers_have_the_same_macros_and_declarations() {
     for (robot, own) in [("scara.yaml", "SCARA"), ("panda7.yaml", "PANDA7")] {
         let generated = generate_of(robot, Scalar::F64, Selection::default());
-        let inverse_kinematics = generated.inverse_kinematics_for_c().expect("a construction").header;
+        let inverse_kinematics = generated.solvers().next().expect("an end effector").for_c().expect("a construction").header;
         let standalone = [generated.in_language(Language::C), generated.inverse_kinematics_in_c().expect("a construction")];
         let of_rust = [generated.c.header, inverse_kinematics];
         for (k, (standalone, of_rust)) in standalone.iter().zip(&of_rust).enumerate() {
@@ -270,8 +270,9 @@ fn unsafe_is_confined_and_explained() {
         assert!(!generated.module.contains("unsafe") && !generated.runtime.contains("unsafe"));
         assert!(!generated.inverse_kinematics().contains("unsafe"));
         let laws = generated.laws_for_c("robot.h").expect("an arm with dynamics").wrappers;
-        let wrappers =
-            generated.c.wrappers.clone() + &laws + &generated.inverse_kinematics_for_c().expect("a construction").wrappers;
+        let wrappers = generated.c.wrappers.clone()
+            + &laws
+            + &generated.solvers().next().expect("an end effector").for_c().expect("a construction").wrappers;
         let lines: Vec<&str> = wrappers.lines().collect();
         let blocks = lines.iter().enumerate().filter(|(_, line)| line.contains("unsafe {"));
         for (at, line) in blocks {

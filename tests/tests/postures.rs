@@ -321,7 +321,7 @@ fn the_program_of_the_page_runs() {
     project.write("src/robot_ik.rs", &generated.inverse_kinematics());
     project.write("src/robot_runtime.rs", &generated.runtime_with_inverse_kinematics("robot_ik"));
     let tests = armgen_verify::test_kit(&source, &generated.module, "#[path = \"robot.rs\"]\nmod robot;").expect("tests");
-    project.write("src/robot_test.rs", &(tests + &generated.inverse_kinematics_test("robot_ik.rs")));
+    project.write("src/robot_test.rs", &(tests + &generated.solvers().next().expect("an end effector").test("robot_ik.rs")));
     project.write("src/main.rs", &format!("{program}\n#[cfg(test)]\nmod robot_test;\n"));
     let said = project.succeed(&["run", "--quiet"]);
     assert_eq!(said.matches("wrist flipped").count(), 4, "{said}");

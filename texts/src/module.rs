@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use armgen_codegen::emit::Language;
-use armgen_codegen::Generated;
+use armgen_codegen::{Generated, Solver};
 
 /// A file: its path, and its text.
 pub type Output = (PathBuf, String);
@@ -21,14 +21,15 @@ pub fn files(generated: &Generated, language: Language, out: &Path) -> Vec<Outpu
     files
 }
 
-/// Inverse kinematics beside the module `out`: a header for a header, else a module of Rust.
+/// Inverse kinematics of an end effector beside the module `out`: a header for a header, else a module of Rust.
 ///
 /// # Errors
 /// A fault of this program.
-pub fn inverse_kinematics(generated: &Generated, language: Language, out: &Path) -> Result<Output, String> {
+pub fn inverse_kinematics(solver: &Solver<'_>, language: Language, out: &Path) -> Result<Output, String> {
+    let file = |ending: &str| beside(out, &format!("{}_ik.{ending}", solver.infix()));
     Ok(match language.is_c() {
-        true => (beside(out, "_ik.h"), generated.inverse_kinematics_in_c()?),
-        false => (beside(out, "_ik.rs"), generated.inverse_kinematics()),
+        true => (file("h"), solver.in_c()?),
+        false => (file("rs"), solver.text()),
     })
 }
 

@@ -9,10 +9,11 @@ mod reach;
 use armgen_codegen::description::{Convention, Products, RobotDescription};
 use armgen_codegen::diagnostic::Diagnostics;
 use armgen_codegen::exact::{Number, Polynomial};
+use armgen_codegen::inverse_kinematics::Solved;
 use armgen_codegen::kinds::Scalar;
 use armgen_codegen::manipulator::{Manipulator, RegressorChoice};
 use armgen_codegen::source::Source;
-use armgen_codegen::{derive, inverse_kinematics, validate, Model};
+use armgen_codegen::{derive, validate, Model};
 use armgen_terminal as terminal;
 use armgen_terminal::input::counted;
 use armgen_terminal::number::without_zeros;
@@ -53,7 +54,7 @@ pub fn of_arm(source: &Source, model: &Model, diagnostics: &Diagnostics, full: b
             Some(bodies::masses(manipulator, &distances)),
             bodies::inertias(manipulator),
             Some(posture::frames(manipulator)),
-            posture::carried(manipulator),
+            Some(posture::carried(manipulator)),
             Some(identification::report(model)),
             Some(ADVICE.into()),
         ],
@@ -61,7 +62,7 @@ pub fn of_arm(source: &Source, model: &Model, diagnostics: &Diagnostics, full: b
             Some(arm(source, description, manipulator)),
             Some(joints::rows(source, description, manipulator)),
             Some(bodies::masses(manipulator, &distances)),
-            posture::carried(manipulator),
+            Some(posture::carried(manipulator)),
             Some(ADVICE.to_owned() + MORE),
         ],
     };
@@ -139,12 +140,11 @@ fn arm(source: &Source, description: &RobotDescription, manipulator: &Manipulato
     if manipulator.tips.is_empty() {
         row("task", format!("{} ({against}{of})", rows.join(", ")));
     }
-    row(
-        "inverse kinematics",
-        match inverse_kinematics::of(manipulator) {
+    for solved in Solved::all(manipulator) {
+        let found = match &solved.found {
             Ok(found) => format!("{}: at most {}", found.class, counted(found.most, "solution")),
             // Two lines always have a common normal, which a row of 17 digits holds where no short number does.
-            Err(reason) => match rows::solved(source) {
+            Err(reason) => match rows::solved(source).filter(|_| solved.tip.is_none()) {
                 Some(found) => format!(
                     "of the rows that `armgen convert --convention standard` writes: {}, at most {}",
                     found.class,
@@ -152,8 +152,9 @@ fn arm(source: &Source, description: &RobotDescription, manipulator: &Manipulato
                 ),
                 None => format!("none: {reason}"),
             },
-        },
-    );
+        };
+        row("inverse kinematics", solved.tip.as_ref().map_or(found.clone(), |tip| format!("{tip}, {found}")));
+    }
     let names = manipulator.parameters.len();
     row("named parameters", names.to_string());
     let regressor = match &manipulator.regressor {

@@ -347,11 +347,26 @@ pub fn companion(module: &Module, claims: &Claims, import: &str) -> Result<Strin
     Ok(text)
 }
 
+/// Sizes of an arm for the bound of inverse kinematics.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Extent {
+    /// The largest distance of a link frame from the axis of its joint, m, of those joints that turn about an axis on which the frame of the link
+    /// before them is not either; of others 0.
+    pub lever: f64,
+    /// The sum of |dq_i/dp_j| of the joints up to the end effector that turn, over all coordinates, with room for rounding.
+    pub turning: f64,
+    /// That of the joints that slide.
+    pub sliding: f64,
+}
+
 /// What follows in the companion of a module with inverse kinematics: `inverse_kinematics_error_bound`, how far an exact solution is from joint
 /// variables. A comment for an arm whose task has not as many rows as it has joints: nothing can be inverted there.
-pub fn of_inverse_kinematics(module: &Module) -> String {
+pub fn of_inverse_kinematics(module: &Module, extent: Extent) -> String {
     let sizes = module.sizes();
-    if sizes.tips.is_empty() && sizes.m != sizes.n {
+    if !sizes.tips.is_empty() {
+        return "\n// There is no `inverse_kinematics_error_bound` of an arm with several end effectors.\n".into();
+    }
+    if sizes.m != sizes.n {
         return "\n// There is no `inverse_kinematics_error_bound`: the task has not as many rows as the arm has joints.\n"
             .into();
     }
@@ -366,19 +381,21 @@ pub fn of_inverse_kinematics(module: &Module) -> String {
         Float::F64 => "libm::sqrt",
         Float::F32 => "libm::sqrtf",
     };
-    let text = include_str!("companion/inverse_kinematics.rs.txt").replace("{root}", root);
+    let mut text = include_str!("companion/inverse_kinematics.rs.txt").replace("{root}", root);
+    let Extent { lever, turning, sliding } = extent;
+    if lever > 0.0 {
+        let start = format!("    // Beside the frames there is an axis, up to so far from the frame after it.\n    let (mut length, mut last) = ({lever:?}, ");
+        text = text.replace("    let (mut length, mut last) = (0.0, ", &start);
+    }
     if sizes.joints.is_none() {
         return text;
     }
-    // All joints count, each by the change of its variable as coordinates change by 1.
+    // Each joint counts by the change of its variable as coordinates change by at most 1.
     let (before, rest) = text.split_once("    let turning =").expect("the joints are counted");
-    let (_, behind) = rest.split_once("    // A = R(q) R'").expect("then the rotation is taken");
+    let (_, behind) = rest.split_once("    // Slides can").expect("then the length is taken");
     let (before, behind) = (about_coordinates(before), about_coordinates(behind));
-    before
-        + "    // The change of all joint variables together as coordinates change by at most 1.\n    \
-           let moved = COUPLING.iter().flatten().fold(0.0, |sum, factor| sum + factor.abs());\n    \
-           let length = (length + moved) * 1.001 + ROUNDED;\n    let second = 1.001 * (length + 2.0) * moved * moved;\n    // A = R(q) R'"
-        + &behind
+    let counts = format!("    let (turning, sliding): (Real, Real) = ({turning:?}, {sliding:?});\n");
+    before + &counts + "    // Slides can" + &behind
 }
 
 /// A text about an arm's joint variables as one about coordinates of coupled joints.
@@ -386,7 +403,7 @@ fn about_coordinates(text: &str) -> String {
     let text = text.replace("in the joint variable that differs most", "in the coordinate that differs most");
     text.replace(
         "k = l r² + 2 r s for r joints that turn and s that slide",
-        "k = (l + 2) s², s the sum of |`COUPLING`|, over both turns and slides",
+        "k = l r² + 2 r s, r and s the sums of |dq_i/dp_j| of the joints that turn and that slide",
     )
 }
 

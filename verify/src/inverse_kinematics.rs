@@ -63,6 +63,25 @@ pub fn is_c(text: &str) -> bool {
     text.starts_with("/*") && (text.contains("_nearest_to(") || text.contains("\n * There is no inverse kinematics: "))
 }
 
+/// The named end effector that a text is of, by its number; `None` of an arm that has one end effector without a name.
+///
+/// # Errors
+/// An end effector that the arm does not have, or none where it has several.
+pub fn end_effector(manipulator: &Manipulator, text: &str) -> Result<Option<usize>, String> {
+    let head = text.lines().take_while(|line| line.is_empty() || line.starts_with(['/', ' '])).find_map(|line| {
+        let line = line.strip_prefix("// ").or_else(|| line.strip_prefix(" * "))?;
+        Some(line.strip_prefix("End effector: ")?.split_once(". Entries of q: ")?.0)
+    });
+    match head {
+        None if manipulator.tips.is_empty() => Ok(None),
+        None => Err("the module does not name the end effector that it is of".into()),
+        Some(name) => {
+            let tip = manipulator.tips.iter().position(|tip| tip.name == name);
+            tip.map(Some).ok_or_else(|| format!("the arm has no end effector `{name}`"))
+        }
+    }
+}
+
 /// Number of rational poses for counts.
 pub const POSES: usize = 64;
 
@@ -210,6 +229,11 @@ pub fn verify(source: &Source, text: &str, proposal: &Proposal, poses: usize) ->
     let manipulator = match crate::arm(source) {
         Ok(manipulator) => manipulator,
         Err(faults) => return Report { faults: vec![faults], ..report },
+    };
+    let manipulator = match end_effector(&manipulator, text) {
+        Ok(Some(tip)) => manipulator.arm_to(tip),
+        Ok(None) => manipulator,
+        Err(fault) => return Report { faults: vec![fault], ..report },
     };
     report.robot.clone_from(&manipulator.name);
     if let Some((line, c)) = hidden(text) {

@@ -3,7 +3,7 @@
 #[path = "bounds/page.rs"]
 mod page;
 
-use crate::common;
+use crate::{arms, common};
 
 use std::path::Path;
 use std::process::Command;
@@ -11,12 +11,13 @@ use std::process::Command;
 use armgen_codegen::emit::Notes;
 use armgen_codegen::kinds::Scalar;
 use armgen_codegen::manipulator::Manipulator;
-use armgen_codegen::schedule::Options;
+use armgen_codegen::schedule::{Options, Selection};
+use armgen_codegen::source::Source;
 use armgen_codegen::validate;
 use armgen_verify::arithmetic::wide::Wide;
 use armgen_verify::bounds::{domain_of, draw, notes, of, of_function, two_digits};
 use armgen_verify::claims::Claims;
-use armgen_verify::companion::{companion, LaneArguments, Table};
+use armgen_verify::companion::{companion, Extent, LaneArguments, Table};
 use armgen_verify::element::Element;
 use armgen_verify::errors::{Run, Seen, Subject};
 use armgen_verify::float::LANES;
@@ -226,25 +227,117 @@ fn the_bound_of_inverse_kinematics_holds() {
     for (name, scalar) in [("puma560", Scalar::F64), ("scara", Scalar::F64), ("scara", Scalar::F32)] {
         let (text, module, claims, _) = robot(name, scalar);
         let companion = companion(&module, &claims, "use super::robot::*;").expect("a companion");
-        let companion = companion + &armgen_verify::companion::of_inverse_kinematics(&module);
-        let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join("solutions").join(name);
-        std::fs::create_dir_all(folder.join("src")).expect("a folder");
-        let write = |file: &str, text: &str| std::fs::write(folder.join(file), text).expect("written");
-        write("Cargo.toml", "[package]\nname = \"solutions\"\nversion = \"0.1.0\"\nedition = \"2021\"\n\n[dependencies]\nlibm = \"0.2\"\n\n[workspace]\n");
-        write("src/robot.rs", &text);
-        write("src/robot_bounds.rs", &companion);
-        write("src/main.rs", include_str!("common/solution_bounds.rs.txt"));
-        let output = Command::new(env!("CARGO"))
-            .args(["run", "--offline", "--quiet"])
-            .current_dir(&folder)
-            .env("CARGO_TARGET_DIR", folder.join("target"))
-            .env("RUSTFLAGS", "-D warnings")
-            .output()
-            .expect("cargo runs");
-        let printed = String::from_utf8_lossy(&output.stdout).into_owned();
+        let companion = companion + &armgen_verify::companion::of_inverse_kinematics(&module, Extent::default());
+        let main = include_str!("common/solution_bounds.rs.txt");
+        let printed =
+            run_of(&format!("solutions/{name}"), &[("main.rs", main), ("robot.rs", &text), ("robot_bounds.rs", &companion)]);
         println!("{name}: {printed}");
-        assert!(output.status.success(), "{name}: {printed}{}", String::from_utf8_lossy(&output.stderr));
     }
+}
+
+/// The same of coupled joints, at postures that are found: those of single precision are off by no more than the bound, and so are points
+/// beside those of double precision. The couplings are random ones: whole factors between joints that turn, any beside slides.
+#[test]
+#[ignore = "wide"]
+fn the_bound_of_coupled_postures_holds() {
+    let mut random = Random(5);
+    let wanted = ["planar3r", "elbow3r", "position3r", "position_prr", "position_rrp", "gantry", "stanford", "general", "table"];
+    let free = arms::made_up().into_iter().filter(|(name, ..)| wanted.contains(name));
+    let mut all: Vec<_> = free.map(|(name, _, _, text)| (name.to_owned(), coupled_at_random(&text, &mut random))).collect();
+    all.extend(arms::coupled().into_iter().map(|(name, _, _, text)| (name.to_owned(), text)));
+    // The first axis is far from every frame where the second link is at the base frame.
+    let rows = [(arms::R, "5", "0", "0", "0"), (arms::R, "0.4", "0", "0.1", "0.3")];
+    all.push(("beside".to_owned(), arms::description("beside", "task: [x, y]\nbase: {xyz: [-5, 0, 0]}", &rows)));
+    let (mut files, mut modules, mut calls) = (Vec::new(), String::new(), String::new());
+    for (name, text) in &all {
+        for (module, scalar) in [(format!("{name}_f32"), Scalar::F32), (format!("{name}_f64"), Scalar::F64)] {
+            let names = ["direct_kinematics", "link_frames", "geometric_jacobian", "joint_variables"];
+            let functions = Selection::named(names).expect("functions");
+            let options = Options { scalar, functions, ..Options::default() };
+            let generated = common::generate_with(&Source::new(format!("{name}.yaml"), text.clone()), &options);
+            let import = format!("use super::{module}::*;");
+            let bounds = armgen_certify::companion(&generated, &import).expect("a companion");
+            let of_postures = armgen_certify::companion_of_inverse_kinematics(&generated).expect("a companion");
+            for (ending, text) in
+                [("", generated.module.clone()), ("_ik", generated.inverse_kinematics()), ("_bounds", bounds + &of_postures)]
+            {
+                modules += &format!("#[allow(warnings)]\nmod {module}{ending};\n");
+                files.push((format!("{module}{ending}.rs"), text));
+            }
+        }
+        let of =
+            |ending: &str| files.iter().find(|(file, _)| *file == format!("{name}_f64{ending}.rs")).map_or("", |(_, text)| text);
+        // A given value leaves more joints than rows.
+        if of("_bounds").contains("pub fn inverse_kinematics_error_bound") && !of("_ik").contains("redundancy: Real") {
+            let range = if name == "beside" { "0.3" } else { "3.1" };
+            calls += &format!(
+                "    judge!({range}, {name}_f32, {name}_f32_ik, {name}_f32_bounds, {name}_f64, {name}_f64_ik, {name}_f64_bounds);\n"
+            );
+        }
+    }
+    assert!(calls.lines().count() >= 10, "{calls}");
+    let main = include_str!("common/coupled_bounds.rs.txt");
+    files.push(("main.rs".to_owned(), format!("{modules}\n{RANDOM}\n{main}\nfn main() {{\n{calls}}}\n")));
+    let files: Vec<_> = files.iter().map(|(file, text)| (file.as_str(), text.as_str())).collect();
+    println!("{}", run_of("coupled_solutions", &files));
+}
+
+include!("../../codegen/tests/inverse_kinematics/random.rs");
+
+const RANDOM: &str = include_str!("../../codegen/tests/inverse_kinematics/random.rs");
+
+/// The rows of a description with random couplings, whole turns of whose coordinates are whole turns of the joints.
+fn coupled_at_random(free: &str, random: &mut Random) -> String {
+    let kinds: Vec<bool> = free.lines().filter(|line| line.contains("{name: j")).map(|line| line.contains("prismatic")).collect();
+    // Each joint adds some of those before it, in a random order.
+    let mut order: Vec<usize> = (0..kinds.len()).collect();
+    (1..order.len()).for_each(|i| order.swap(i, random.below(i as u64 + 1) as usize));
+    let mut text = free.to_owned();
+    for (place, &joint) in order.iter().enumerate().skip(1) {
+        let mut leaders = Vec::new();
+        for &leader in &order[..place] {
+            let factors: &[&str] = match (kinds[joint], kinds[leader]) {
+                _ if random.below(2) == 0 => continue,
+                (true, false) => continue,
+                (false, false) => &["1", "-1", "2", "-3"],
+                (_, true) => &["0.7", "-3/2", "sqrt(2)", "pi/2"],
+            };
+            leaders.push(format!("j{}: {}", leader + 1, factors[random.below(4) as usize]));
+        }
+        if !leaders.is_empty() {
+            let offset = ["", ", offset: 0.3", ", offset: -pi/3", ", offset: sqrt(2)"][random.below(4) as usize];
+            let name = format!("{{name: j{}, ", joint + 1);
+            text = text.replacen(&name, &format!("{name}adds: {{{}}}{offset}, ", leaders.join(", ")), 1);
+        }
+    }
+    if text.contains("adds: ") {
+        text
+    } else {
+        coupled_at_random(free, random)
+    }
+}
+
+/// The output of a program of these files, which has to succeed.
+fn run_of(folder: &str, files: &[(&str, &str)]) -> String {
+    let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join(folder);
+    std::fs::create_dir_all(folder.join("src")).expect("a folder");
+    let manifest =
+        "[package]\nname = \"solutions\"\nversion = \"0.1.0\"\nedition = \"2021\"\n\n[dependencies]\nlibm = \"0.2\"\n\n\
+                    [workspace]\n\n[profile.dev]\nopt-level = 1\ndebug = false\nincremental = false\n";
+    std::fs::write(folder.join("Cargo.toml"), manifest).expect("written");
+    for (file, text) in files {
+        std::fs::write(folder.join("src").join(file), text).expect("written");
+    }
+    let output = Command::new(env!("CARGO"))
+        .args(["run", "--offline", "--quiet"])
+        .current_dir(&folder)
+        .env("CARGO_TARGET_DIR", folder.join("target"))
+        .env("RUSTFLAGS", "-D warnings")
+        .output()
+        .expect("cargo runs");
+    let printed = String::from_utf8_lossy(&output.stdout).into_owned();
+    assert!(output.status.success(), "{}: {printed}{}", folder.display(), String::from_utf8_lossy(&output.stderr));
+    printed
 }
 
 /// Merging takes the larger sizes and adds the counts.

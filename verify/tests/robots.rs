@@ -1,6 +1,6 @@
 //! Verifies every robot of the project in both scalars; a certificate lets anyone verify again.
 
-use crate::common;
+use crate::{arms, common};
 
 use std::path::Path;
 
@@ -8,7 +8,7 @@ use armgen_certify::{certify, verify};
 use armgen_codegen::exact::Number;
 use armgen_codegen::kinds::Scalar;
 use armgen_codegen::program::Trig;
-use armgen_codegen::schedule::Options;
+use armgen_codegen::schedule::{Options, Selection};
 use armgen_codegen::source::Source;
 use armgen_verify::certificate::Certificate;
 use armgen_verify::checker::Effort;
@@ -81,6 +81,37 @@ fn the_inverse_kinematics_of_every_robot_is_certified_or_says_why_not() {
         }
     }
     assert_eq!(without, ["counterbalance", "everything"]);
+}
+
+/// A module of each end effector, in Rust and in C, is certified for that end effector and for no other.
+#[test]
+fn the_inverse_kinematics_of_each_end_effector_is_certified() {
+    let source = Source::new("two.yaml", arms::two_of("ur5").0);
+    let functions = Selection::named(["left_direct_kinematics"]).expect("a function");
+    let generated = common::generate_with(&source, &Options { functions, ..Options::default() });
+    let ends: Vec<_> = generated.solvers().map(|solver| (solver.infix(), solver.text(), solver.in_c().expect("C"))).collect();
+    assert_eq!(ends.iter().map(|(infix, ..)| infix.as_str()).collect::<Vec<_>>(), ["_left", "_right"]);
+    let verify = |text: &str| armgen_certify::verify_inverse_kinematics(&source, text, 2);
+    for (_, rust, c) in &ends {
+        for text in [rust, c] {
+            let report = verify(text);
+            assert!(report.passed() && report.sound == Some(8) && !report.absent, "{report}");
+        }
+    }
+    let [(_, left, c), (_, right, _)] = ends.as_slice() else { panic!("two end effectors") };
+    let line = "End effector: left. Entries of q: left_joint1, ";
+    assert!(left.contains(line) && c.contains(line) && c.contains("void ur5_left_inverse_kinematics("));
+    let exchanged = |text: &str| text.replace("left_joint", "right_joint").replace("effector: left", "effector: right");
+    for (spoilt, fault) in [
+        (exchanged(left), "LOOP: "),
+        (left.replace("left_joint1, left_joint2", "left_joint2, left_joint1"), "where armgen writes"),
+        (left.replace("End effector: left", "End effector: middle"), "the arm has no end effector `middle`"),
+        (left.lines().filter(|text| !text.contains(line)).collect::<Vec<_>>().join("\n"), "does not name the end effector"),
+        (right.replace("End effector: right", "End effector: left"), "LOOP: "),
+    ] {
+        let report = verify(&spoilt);
+        assert!(report.faults.first().is_some_and(|found| found.contains(fault)), "{fault}: {report}");
+    }
 }
 
 /// In `light` the torque limits are a thousand times the torques of the arm. In `lift` the rate of the shoulder, passed on by the following links,

@@ -111,8 +111,8 @@ fn functions(model: &Model) -> Vec<Value> {
 /// A quantity as `armgen show` writes it.
 fn show(request: &Value, model: &Model) -> Result<Value, String> {
     let name = word(request, "quantity");
-    if name == shown::INVERSE_KINEMATICS {
-        return Ok(json!({ "text": shown::steps_of_inverse_kinematics(model), "latex": null }));
+    if let Some(steps) = shown::steps_of(model, name) {
+        return Ok(json!({ "text": steps, "latex": null }));
     }
     let reading = if request["symbolic"] == true { Reading::Symbolic } else { Reading::Nominal };
     let style = Style { form: shown::usual_form(model), digits: None };
@@ -204,9 +204,11 @@ fn files(generated: &Generated, language: Language) -> Result<Value, String> {
     let mut files = module::files(generated, language, Path::new(&out));
     let mut note = None;
     if language.is_c() || language == Language::Rust {
-        match generated.no_inverse_kinematics() {
-            None => files.push(module::inverse_kinematics(generated, language, Path::new(&out))?),
-            Some(reason) => note = Some(format!("there is no inverse kinematics: {reason}")),
+        for solver in generated.solvers() {
+            match &solver.solved().found {
+                Ok(_) => files.push(module::inverse_kinematics(&solver, language, Path::new(&out))?),
+                Err(reason) => note = Some(format!("there is no inverse kinematics{}: {reason}", solver.solved().of_it())),
+            }
         }
     }
     let files: Vec<Value> = files.into_iter().map(|(path, text)| json!([path.display().to_string(), text])).collect();

@@ -13,7 +13,7 @@ use armgen_codegen::program::Trig;
 use armgen_codegen::schedule::{Options, Selection};
 use armgen_codegen::source::Source;
 use armgen_codegen::validate;
-use armgen_codegen::Generated;
+use armgen_codegen::{Generated, Solver};
 use armgen_texts::module::{self, Output};
 use armgen_texts::rows;
 use armgen_verify::certificate::Certificate;
@@ -79,7 +79,7 @@ pub(crate) struct Beside {
     #[arg(long)]
     native: bool,
     /// Write inverse kinematics beside it, robot_ik.rs: all joint variables that reach a pose, in a module of its own; with
-    /// --language c robot_ik.h, with --tests robot_ik_test.c too
+    /// --language c robot_ik.h, with --tests robot_ik_test.c too; of a named end effector robot_left_ik.rs
     #[arg(long)]
     ik: bool,
     /// Write nothing: compare the files with what would be written, and fail where one is missing or differs
@@ -171,18 +171,21 @@ pub(crate) fn run(file: &Path, out: Option<&Path>, choices: &Choices, beside: &B
     if !input::all_there(source.name(), &generated.absent, functions) {
         return FAULTY;
     }
-    if let Some(reason) = generated.no_inverse_kinematics().filter(|_| beside.ik) {
-        if generated.asks_for_inverse_kinematics() {
+    for solver in generated.solvers().filter(|_| beside.ik) {
+        let solved = solver.solved();
+        let Err(reason) = &solved.found else { continue };
+        let of_it = solved.of_it();
+        if solved.is_asked_for() {
             terminal::error(&format!(
-                "nothing is written: the description asks for `inverse_kinematics`, and there is none: {reason}"
+                "nothing is written: the description asks for `inverse_kinematics`{of_it}, and there is none: {reason}"
             ));
             return FAULTY;
         }
-        let remedy = match rows::solved(&source) {
+        let remedy = match rows::solved(&source).filter(|_| solved.tip.is_none()) {
             Some(_) => format!("; the rows that `armgen convert {} --convention standard` writes have one", source.name()),
             None => String::new(),
         };
-        terminal::warning(&format!("there is no inverse kinematics: {reason}{remedy}"));
+        terminal::warning(&format!("there is no inverse kinematics{of_it}: {reason}{remedy}"));
     }
     // The bounds are those of one state at a time.
     if choices.batch.is_none() {
@@ -248,8 +251,10 @@ pub(crate) fn in_memory(
     if let Some(Absent { function, reason }) = absent {
         return Err(format!("there is no `{function}` of this arm: {reason}"));
     }
-    if let Some(reason) = generated.no_inverse_kinematics().filter(|_| beside.ik) {
-        return Err(format!("there is no inverse kinematics: {reason}"));
+    for solver in generated.solvers().filter(|_| beside.ik) {
+        if let Err(reason) = &solver.solved().found {
+            return Err(format!("there is no inverse kinematics{}: {reason}", solver.solved().of_it()));
+        }
     }
     if choices.batch.is_none() {
         // Without them the documentation is shorter.
@@ -469,10 +474,14 @@ impl Requested<'_> {
         })?;
         let mut files = Vec::new();
         match language {
-            Language::Rust if beside.ik => tests += &generated.inverse_kinematics_test(&format!("{stem}_ik.rs")),
+            Language::Rust if beside.ik => {
+                generated.solvers().for_each(|solver| tests += &solver.test(&format!("{stem}_ik.rs")));
+            }
             Language::C if beside.ik => {
-                let test = generated.inverse_kinematics_test_in_c(&name, &format!("{stem}_ik.h"));
-                files.extend(test.map(|test| self.file("_ik_test.c", test)));
+                for solver in generated.solvers() {
+                    let test = solver.test_in_c(&name, &format!("{stem}_ik.h"));
+                    files.extend(test.map(|test| self.file("_ik_test.c", test)));
+                }
             }
             _ => {}
         }
@@ -480,23 +489,25 @@ impl Requested<'_> {
         Ok(files)
     }
 
-    /// The module of inverse kinematics, and its certificate on request.
+    /// The modules of inverse kinematics, one for each end effector, and their certificates on request.
     fn inverse_kinematics(&self) -> Result<Vec<Output>, String> {
-        let (file, text) = module::inverse_kinematics(self.generated, self.language, self.out)?;
         let mut files = Vec::new();
-        if self.beside.verify {
-            let poses = armgen_verify::inverse_kinematics::POSES;
-            let report = with_spinner("verifying", || armgen_certify::verify_inverse_kinematics(self.source, &text, poses));
-            if let Some(fault) = report.faults.first() {
-                return Err(format!(
-                    "nothing is written: the module of inverse kinematics is not verified, {fault}; this is a fault of armgen"
-                ));
+        for solver in self.generated.solvers() {
+            let (file, text) = module::inverse_kinematics(&solver, self.language, self.out)?;
+            if self.beside.verify {
+                let poses = armgen_verify::inverse_kinematics::POSES;
+                let report = with_spinner("verifying", || armgen_certify::verify_inverse_kinematics(self.source, &text, poses));
+                if let Some(fault) = report.faults.first() {
+                    return Err(format!(
+                        "nothing is written: the module of inverse kinematics is not verified, {fault}; this is a fault of armgen"
+                    ));
+                }
+                let certificate = certificate_beside(&file);
+                terminal::note(&format!("{}; {}", report.summary(), certificate.display()));
+                files.push((certificate, report.to_json()));
             }
-            let certificate = certificate_beside(&file);
-            terminal::note(&format!("{}; {}", report.summary(), certificate.display()));
-            files.push((certificate, report.to_json()));
+            files.push((file, text));
         }
-        files.push((file, text));
         Ok(files)
     }
 
@@ -504,7 +515,8 @@ impl Requested<'_> {
     fn bounds(&self) -> Result<Output, String> {
         let module = format!("use super::{}::*;", validate::module_name(&self.stem()));
         let mut companion = armgen_certify::companion(self.generated, &module)?;
-        if self.beside.ik && self.generated.has_inverse_kinematics_of_pose_alone() {
+        let is_of_pose_alone = |solver: Solver<'_>| solver.solved().found.as_ref().is_ok_and(|found| found.redundancy.is_none());
+        if self.beside.ik && self.generated.solvers().any(is_of_pose_alone) {
             companion += &armgen_certify::companion_of_inverse_kinematics(self.generated)?;
         }
         Ok(self.file("_bounds.rs", companion))
@@ -530,9 +542,10 @@ impl Requested<'_> {
             files.push(self.file("_laws.h", face.header));
             files.push(self.file("_laws_c.rs", face.wrappers));
         }
-        if let Some(face) = self.beside.ik.then(|| self.generated.inverse_kinematics_for_c()).flatten() {
-            files.push(self.file("_ik.h", face.header));
-            files.push(self.file("_ik_c.rs", face.wrappers));
+        for solver in self.generated.solvers().filter(|_| self.beside.ik) {
+            let Some(face) = solver.for_c() else { continue };
+            files.push(self.file(&format!("{}_ik.h", solver.infix()), face.header));
+            files.push(self.file(&format!("{}_ik_c.rs", solver.infix()), face.wrappers));
         }
         files
     }

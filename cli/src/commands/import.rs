@@ -6,6 +6,7 @@ use std::path::{Path, PathBuf};
 
 use armgen_codegen::diagnostic::{Diagnostics, Severity};
 use armgen_codegen::inverse_kinematics::{self, Construction, InverseKinematics};
+use armgen_codegen::manipulator::Manipulator;
 use armgen_codegen::source::Source;
 use armgen_import::{Imported, Options};
 use armgen_terminal::input::LONGEST;
@@ -201,7 +202,8 @@ fn note_faults(source: &Source, options: &Options, imported: &Imported, results:
         terminal::note(&format!("{called} has warnings, which `armgen check` shows: {}", kinds.join(", ")));
     }
     // Digits that stand for pi/2 and are taken as written leave axes that meet nearly.
-    if let Some((manipulator, _)) = valid.filter(|_| imported.report.near() > 0) {
+    let has_one = |arm: &Manipulator| imported.report.near() > 0 && arm.tips.is_empty();
+    if let Some((manipulator, _)) = valid.filter(|(arm, _)| has_one(arm)) {
         note_inverse_kinematics(source, options, &as_description, &inverse_kinematics::of(&manipulator));
     }
 }

@@ -4,8 +4,7 @@ use armgen_codegen::catalogue::Absent;
 use std::path::Path;
 
 use armgen_codegen::show::{Form, Reading, Sheet, Style};
-use armgen_codegen::Model;
-use armgen_texts::shown::{items, steps_of_inverse_kinematics, usual_form, INVERSE_KINEMATICS};
+use armgen_texts::shown::{items, steps_of, steps_of_inverse_kinematics, usual_form, INVERSE_KINEMATICS};
 
 use crate::{input, terminal, ShowFormat, UNREADABLE};
 
@@ -27,8 +26,12 @@ pub(crate) fn run(file: &Path, quantities: &[String], asked: &Asked) -> u8 {
     let Asked { symbolic, form, digits, format } = *asked;
     let style = Style { form: form.unwrap_or_else(|| usual_form(&model)), digits };
     let as_it_comes = form.is_none() && digits.is_none();
-    if quantities.iter().any(|name| name.replace('-', "_") == INVERSE_KINEMATICS) {
-        return inverse_kinematics(&model, quantities.len() > 1 || symbolic || !as_it_comes || format != ShowFormat::Text);
+    if let Some(steps) = quantities.iter().find_map(|name| steps_of(&model, &name.replace('-', "_"))) {
+        if quantities.len() > 1 || symbolic || !as_it_comes || format != ShowFormat::Text {
+            terminal::error(&format!("`{INVERSE_KINEMATICS}` is shown alone, as text with numbers: leave the rest out"));
+            return UNREADABLE;
+        }
+        return terminal::print(&steps);
     }
     let items = match items(&model, quantities) {
         Ok(items) => items,
@@ -51,12 +54,4 @@ pub(crate) fn run(file: &Path, quantities: &[String], asked: &Asked) -> u8 {
         ShowFormat::Latex => sheet.latex(),
         ShowFormat::Json => sheet.json(),
     })
-}
-
-fn inverse_kinematics(model: &Model, otherwise: bool) -> u8 {
-    if otherwise {
-        terminal::error(&format!("`{INVERSE_KINEMATICS}` is shown alone, as text with numbers: leave the rest out"));
-        return UNREADABLE;
-    }
-    terminal::print(&steps_of_inverse_kinematics(model))
 }

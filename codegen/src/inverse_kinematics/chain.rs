@@ -115,6 +115,9 @@ fn no_turn() -> [Number; 2] {
     [Number::one(), Number::zero()]
 }
 
+/// Why an arm has no inverse kinematics if some of its joints move only other links.
+pub(super) const BESIDE: &str = "some joints do not move the end effector; a name for it under `tips` leaves them out";
+
 impl Chain {
     /// The joints from the base to the end effector.
     pub(super) fn of(manipulator: &Manipulator) -> Result<Chain, String> {
@@ -125,7 +128,7 @@ impl Chain {
         }
         path.reverse();
         if path.len() < manipulator.dof() {
-            return Err("some joints do not move the end effector".into());
+            return Err(BESIDE.into());
         }
         let (mut base, mut joints, mut normals) = (identity(), Vec::new(), Vec::new());
         for (i, id) in path.iter().enumerate() {

@@ -3,6 +3,7 @@
 //! Solutions are told apart up to whole turns. That holds for p as for q if S and S⁻¹ take whole turns to whole turns: between joints that turn both
 //! consist of whole numbers, and no joint slides as a coordinate turns.
 
+use super::chain::BESIDE;
 use super::is_prismatic;
 use crate::exact::Number;
 use crate::manipulator::{GivenBeside, Manipulator};
@@ -40,7 +41,7 @@ impl Coordinates {
         let (tip, dof) = (manipulator.tip.index(), manipulator.dof());
         let path = manipulator.path_to(tip);
         if manipulator.coordinates_of(tip).len() < dof {
-            return Err("some joints do not move the end effector".into());
+            return Err(BESIDE.into());
         }
         if path.len() != dof {
             return Err(UNSOLVED.into());

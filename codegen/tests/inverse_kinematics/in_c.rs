@@ -235,7 +235,10 @@ fn the_caller_of_the_documentation_runs() {
     write("scara.h", &generated.in_language(armgen_codegen::emit::Language::C));
     write("scara_ik.h", &generated.inverse_kinematics_in_c().expect("a construction"));
     write("caller.c", &block("c"));
-    write("scara_ik_test.c", &generated.inverse_kinematics_test_in_c("scara.h", "scara_ik.h").expect("a construction"));
+    write(
+        "scara_ik_test.c",
+        &generated.solvers().next().expect("an end effector").test_in_c("scara.h", "scara_ik.h").expect("a construction"),
+    );
     let compiled = |name: &str| {
         let program = folder.join(name);
         let file = folder.join(format!("{name}.c"));

@@ -9,7 +9,7 @@
 use armgen_codegen::derive::parameters::nominal;
 use armgen_codegen::exact::{Number, Polynomial};
 use armgen_codegen::kinds::JointKind;
-use armgen_codegen::manipulator::{Joint, LinkId, Manipulator, PlacedBody, Placement};
+use armgen_codegen::manipulator::{Joint, LinkId, Manipulator, PlacedBody, Placement, Pose};
 use nalgebra::{Isometry3, Matrix3, Point3, Rotation3, Translation3, Unit, UnitQuaternion, Vector3};
 
 use super::bodies::{short, Solid};
@@ -22,8 +22,8 @@ const ROUNDING: f64 = 1e-9;
 /// The frames of an arm as numbers: the poses before and after the motion of each joint, and its axis.
 pub(super) struct Frames {
     joints: Vec<Step>,
-    tip: usize,
-    tool: Isometry3<f64>,
+    /// The end effectors: their names, the links that carry them, and their frames there.
+    ends: Vec<(String, usize, Isometry3<f64>)>,
 }
 
 /// From the frame of the link that carries a joint to that of the link that it moves.
@@ -44,8 +44,11 @@ impl Frames {
             kind: joint.kind,
             after: isometry(manipulator, &joint.row.after.frame),
         };
-        let tool = isometry(manipulator, &manipulator.tool.frame);
-        Frames { joints: manipulator.joints.iter().map(step).collect(), tip: manipulator.tip.index(), tool }
+        let names = manipulator.tips.iter().map(|tip| format!("end effector {}", tip.name));
+        let names = names.chain(manipulator.tips.is_empty().then(|| "end effector".to_owned()));
+        let end = |(name, (link, tool)): (String, (usize, &Pose))| (name, link, isometry(manipulator, &tool.frame));
+        let ends = names.zip(manipulator.ends()).map(end).collect();
+        Frames { joints: manipulator.joints.iter().map(step).collect(), ends }
     }
 
     /// The arm at joint variables.
@@ -60,8 +63,8 @@ impl Frames {
             };
             links.push(before * motion * step.after);
         }
-        let flange = links[self.tip] * self.tool;
-        Posture { links, axes, flange }
+        let ends = self.ends.iter().map(|(name, link, tool)| (name.clone(), *link, links[*link] * tool)).collect();
+        Posture { links, axes, ends }
     }
 }
 
@@ -69,7 +72,8 @@ impl Frames {
 pub(super) struct Posture {
     links: Vec<Isometry3<f64>>,
     pub(super) axes: Vec<Axis>,
-    pub(super) flange: Isometry3<f64>,
+    /// The end effectors: their names, the links that carry them, and their frames.
+    ends: Vec<(String, usize, Isometry3<f64>)>,
 }
 
 /// The axis of a joint.
@@ -95,6 +99,11 @@ impl Axis {
 }
 
 impl Posture {
+    /// The place of the first end effector.
+    pub(super) fn flange(&self) -> Vector3<f64> {
+        self.ends[0].2.translation.vector
+    }
+
     fn at_zero(manipulator: &Manipulator) -> Posture {
         let variables = manipulator.coupling.iter().flat_map(|coupling| &coupling.variables);
         let mut q: Vec<f64> = variables.map(|variable| variable.offset.to_f64()).collect();
@@ -167,7 +176,10 @@ pub(super) fn distances(manipulator: &Manipulator) -> Vec<[Option<f64>; 2]> {
             (i + 1..manipulator.joints.len()).find(|&next| manipulator.joints[next].parent.is_some_and(|link| link.index() == i));
         let next = match next {
             Some(next) => turns(next).then(|| axis.to(&posture.axes[next])),
-            None => (manipulator.tip.index() == i).then(|| axis.from(&posture.flange.translation.vector.into())),
+            None => {
+                let end = posture.ends.iter().find(|(_, link, _)| *link == i);
+                end.map(|(_, _, frame)| axis.from(&frame.translation.vector.into()))
+            }
         };
         match turns(i) {
             true => [posture.of_link(manipulator, i).map(|(_, com)| axis.from(&com)), next],
@@ -196,17 +208,15 @@ pub(super) fn frames(manipulator: &Manipulator) -> String {
     for (i, (joint, axis)) in manipulator.joints.iter().zip(&posture.axes).enumerate() {
         row(format!("{} {}", i + 1, joint.name), direction(&axis.direction), &posture.links[i]);
     }
-    row("end effector".into(), String::new(), &posture.flange);
+    posture.ends.iter().for_each(|(name, _, frame)| row(name.clone(), String::new(), frame));
     frames.text() + "  all in the base frame\n"
 }
 
-/// Where the axes and centres of mass are at q = 0, and what gravity asks of each joint; none where nothing has mass.
-pub(super) fn carried(manipulator: &Manipulator) -> Option<String> {
+/// Where the axes and centres of mass are at q = 0, and what gravity asks of each joint.
+pub(super) fn carried(manipulator: &Manipulator) -> String {
     use Align::{Left, Right};
     // A drive holds what all joints that move with it carry: the function `gravity` has that.
-    if manipulator.coupling.is_some() {
-        return None;
-    }
+    let has_torques = manipulator.coupling.is_none() && !manipulator.is_massless();
     let posture = Posture::at_zero(manipulator);
     let mut carried = Table::new([("at q = 0", Left), ("joint axis", Left), ("centre of mass (m)", Left), ("gravity", Right)]);
     let mut weak = Vec::new();
@@ -215,41 +225,39 @@ pub(super) fn carried(manipulator: &Manipulator) -> Option<String> {
         let held = posture.gravity(manipulator, i);
         // As small as what sums of such numbers round by.
         let held = if held.abs() < ROUNDING { 0.0 } else { held };
-        if let Some(effort) = joint.limits.effort.as_ref().map(Number::to_f64).filter(|effort| held.abs() > *effort) {
+        let effort = joint.limits.effort.as_ref().map(Number::to_f64);
+        if let Some(effort) = effort.filter(|effort| has_torques && held.abs() > *effort) {
             weak.push(format!("{} ({} {unit})", joint.name, short(effort)));
         }
         carried.row([
             format!("{} {}", i + 1, joint.name),
             direction(&axis.direction),
             posture.of_link(manipulator, i).map_or(String::new(), |(_, com)| point(&com.coords)),
-            if manipulator.is_massless() { String::new() } else { format!("{} {unit}", short(held)) },
+            if has_torques { format!("{} {unit}", short(held)) } else { String::new() },
         ]);
     }
-    carried.row([
-        "end effector".into(),
-        String::new(),
-        format!("at {}", point(&posture.flange.translation.vector)),
-        String::new(),
-    ]);
-    let held = match manipulator.is_massless() {
-        true => "",
-        false => "; gravity: the torque or force that the motor must give to hold this posture, springs excluded",
+    for (name, _, frame) in &posture.ends {
+        carried.row([name.clone(), String::new(), format!("at {}", point(&frame.translation.vector)), String::new()]);
+    }
+    let held = match has_torques {
+        true => "; gravity: the torque or force that the motor must give to hold this posture, springs excluded",
+        false if manipulator.coupling.is_some() => "; q: the coordinates",
+        false => "",
     };
     let legend = super::legend(&[format!("in the base frame{held}").as_str()]);
     let weak = match weak.is_empty() {
         true => String::new(),
         false => format!("  that is more than the effort limit of {}\n", weak.join(", ")),
     };
-    Some(carried.text() + &legend + &weak + &outside(manipulator))
+    carried.text() + &legend + &weak + &outside(manipulator)
 }
 
 /// A line where the posture is outside the limits of joints.
 fn outside(manipulator: &Manipulator) -> String {
-    let joints = manipulator.joints.iter().filter(|joint| {
-        let zero = |[low, high]: &[Number; 2]| low.to_f64() <= 0.0 && 0.0 <= high.to_f64();
-        joint.limits.position.as_ref().is_some_and(|position| !zero(position))
-    });
-    let names: Vec<&str> = joints.map(|joint| joint.name.as_str()).collect();
+    let zero = |[low, high]: &[Number; 2]| low.to_f64() <= 0.0 && 0.0 <= high.to_f64();
+    let coordinates = manipulator.coordinates().into_iter();
+    let outside = coordinates.filter(|of| of.limits.position.as_ref().is_some_and(|position| !zero(position)));
+    let names: Vec<&str> = outside.map(|of| of.joint.name.as_str()).collect();
     match names.is_empty() {
         true => String::new(),
         false => format!("  q = 0 is outside the limits of {}\n", names.join(", ")),
@@ -289,7 +297,7 @@ mod tests {
         let posture = Posture::at_zero(&manipulator);
         assert!((posture.gravity(&manipulator, 0) - 20.0).abs() < 1e-12);
         assert!((posture.gravity(&manipulator, 1) - 10.0).abs() < 1e-12);
-        let text = carried(&manipulator).expect("a table");
+        let text = carried(&manipulator);
         assert!(text.contains("2 h") && text.contains("-y0") && text.contains("10 N m"), "{text}");
         assert!(text.contains("end effector") && text.contains("(1, 0, 0.25)"), "{text}");
     }
@@ -299,7 +307,7 @@ mod tests {
     fn an_effort_limit_below_what_is_held_is_said() {
         let of = |effort: &str| {
             let link = "link: {mass: 1, inertia: {xx: 1, yy: 1, zz: 1}}";
-            carried(&arm(&format!("name: a\nconvention: standard\ngravity: [0, -10, 0]\njoints:\n  - {{name: elbow, type: revolute, a: 1, alpha: 0, d: 0, theta: 0, {link}, limits: {{effort: {effort}}}}}\n"))).expect("a table")
+            carried(&arm(&format!("name: a\nconvention: standard\ngravity: [0, -10, 0]\njoints:\n  - {{name: elbow, type: revolute, a: 1, alpha: 0, d: 0, theta: 0, {link}, limits: {{effort: {effort}}}}}\n")))
         };
         assert!(of("9").ends_with("\n  that is more than the effort limit of elbow (9 N m)\n"), "{}", of("9"));
         assert!(!of("11").contains("effort"));
@@ -309,7 +317,7 @@ mod tests {
     fn a_posture_outside_the_limits_is_said_to_be() {
         let of = |limits: &str| {
             let row = "type: revolute, a: 1, alpha: 0, d: 0, theta: 0, link: {mass: 1}";
-            carried(&arm(&format!("name: a\nconvention: standard\ngravity: [0, 0, -10]\njoints:\n  - {{name: elbow, {row}, limits: {{position: {limits}}}}}\n"))).expect("a table")
+            carried(&arm(&format!("name: a\nconvention: standard\ngravity: [0, 0, -10]\njoints:\n  - {{name: elbow, {row}, limits: {{position: {limits}}}}}\n")))
         };
         assert!(of("[1, 2]").contains("\n  q = 0 is outside the limits of elbow\n"));
         assert!(!of("[0, 2]").contains("outside"));

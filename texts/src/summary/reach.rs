@@ -29,7 +29,11 @@ pub(super) fn in_words(manipulator: &Manipulator) -> String {
     }
     let limited = manipulator.joints.iter().any(|joint| joint.limits.position.is_some());
     let within = if limited { ", within the limits" } else { "" };
-    format!("{} m from the origin of the base frame to the end effector{within}", short(farthest(manipulator)))
+    let (of, reach) = match manipulator.tips.len() {
+        0 | 1 => ("", farthest(manipulator)),
+        count => ("farthest ", (0..count).map(|tip| farthest(&manipulator.arm_to(tip))).fold(0.0, f64::max)),
+    };
+    format!("{} m from the origin of the base frame to the {of}end effector{within}", short(reach))
 }
 
 /// m.
@@ -44,13 +48,13 @@ fn farthest(manipulator: &Manipulator) -> f64 {
         let mut q = start(&limits, k);
         for i in (0..ROUNDS).flat_map(|_| 0..limits.len()) {
             let posture = frames.at(&q);
-            let tip = Point3::from(posture.flange.translation.vector);
+            let tip = Point3::from(posture.flange());
             q[i] = match manipulator.joints[i].kind {
                 JointKind::Revolute => turned(q[i], &posture.axes[i], &tip, limits[i]),
                 JointKind::Prismatic => slid(q[i], &posture.axes[i].direction, &tip, limits[i]),
             };
         }
-        frames.at(&q).flange.translation.vector.norm()
+        frames.at(&q).flange().norm()
     };
     (0..STARTS).map(climbed).fold(0.0, f64::max)
 }

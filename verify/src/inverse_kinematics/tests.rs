@@ -535,7 +535,7 @@ fn changes_of_modules_in_c_are_refused() {
         let options = Options { functions: Selection::named(["direct_kinematics"]).expect("a function"), ..Options::default() };
         let generated = armgen_codegen::generate(&source, &options).0.expect("a valid robot");
         let text = generated.inverse_kinematics_in_c().expect("a construction");
-        let proposal = proposal(&source, &manipulator, &text);
+        let proposal = proposal(&source, &manipulator, &text).expect("an end effector");
         assert_eq!(difference(&proposal, &source, &text), None);
         let lines: Vec<&str> = text.lines().collect();
         let before = changed;
@@ -615,7 +615,7 @@ pub(crate) fn tricks(peel: &mut dyn FnMut(&str, &[(Check, &'static str)], Fault<
     let half = Source::new("robot.yaml", whole.replacen("adds: {j2: 1}", "adds: {j2: 1/2}", 1));
     let [of_whole, of_half] = [&source, &half].map(|source| crate::hash(source.text())[..16].to_owned());
     let trick = text.replace(&of_whole, &of_half).replacen(row, &row.replace("-1.0", "-0.5"), 1);
-    let mut right = proposal(&source, &crate::arm(&source).expect("a valid arm"), &text);
+    let mut right = proposal(&source, &crate::arm(&source).expect("a valid arm"), &text).expect("an end effector");
     let values = right.values.as_mut().expect("a construction");
     let minus_half = -&(Number::one().checked_div(&Number::from(2)).expect("a fraction"));
     values.coordinates.as_mut().expect("it is coupled").0[2][1] = minus_half;

@@ -3,13 +3,12 @@
 //! Solutions cross as structs of one layout on both sides (`repr(C)`): numbers of the scalar, and 32 bits for everything else.
 
 use super::header::{comment, macros_of};
-use super::{prefix, CFace};
+use super::CFace;
 use crate::emit::documentation::Block;
 use crate::emit::rust;
 use crate::emit::Origin;
-use crate::inverse_kinematics::{InverseKinematics, Target};
+use crate::inverse_kinematics::{InverseKinematics, Solved, Target};
 use crate::kinds::Scalar;
-use crate::program::Module;
 
 /// The verdicts in the order of their numbers, each with its comment in C; `None` for a comment that depends on the arm.
 const VERDICTS: [(&str, Option<&str>); 5] = [
@@ -21,9 +20,10 @@ const VERDICTS: [(&str, Option<&str>); 5] = [
 ];
 
 /// The C face of inverse kinematics; nothing where the arm has no construction.
-pub fn print_inverse_kinematics(module: &Module, found: &Result<InverseKinematics, String>, origin: &Origin) -> Option<CFace> {
-    let found = found.as_ref().ok()?;
-    Some(CFace { header: header(module, found, origin), wrappers: wrappers(module, found, origin) })
+pub fn print_inverse_kinematics(of: &Solved, scalar: Scalar, origin: &Origin) -> Option<CFace> {
+    let found = of.found.as_ref().ok()?;
+    let names = Names::of(of, scalar);
+    Some(CFace { header: header(&names, of, found, origin), wrappers: wrappers(&names.robot, found, origin) })
 }
 
 /// The names of an arm's headers and of their contents.
@@ -35,8 +35,8 @@ pub(super) struct Names {
 }
 
 impl Names {
-    pub(super) fn of(name: &str, scalar: Scalar, joints: usize) -> Names {
-        let robot = super::spelled(name);
+    pub(super) fn of(of: &Solved, scalar: Scalar) -> Names {
+        let (robot, joints) = (super::spelled(&of.arm.name), of.arm.dof());
         let real = match scalar {
             Scalar::F64 => "double",
             Scalar::F32 => "float",
@@ -49,23 +49,20 @@ pub(super) fn said(lines: &[String]) -> String {
     comment(&[Block::Verbatim(lines.to_vec())], &|_| String::new())
 }
 
-fn header(module: &Module, found: &InverseKinematics, origin: &Origin) -> String {
-    let names = Names::of(&module.name, module.scalar, module.joints.len());
-    let mut text = opening(&names, found, origin);
+fn header(names: &Names, of: &Solved, found: &InverseKinematics, origin: &Origin) -> String {
+    let mut text = opening(names, of, found, origin);
     text += "#include <stdint.h>\n\n#ifdef __cplusplus\nextern \"C\" {\n#endif\n\n";
-    text += &types(&names, found, "`LOOP` in the module in Rust");
-    let functions = functions(&names, found);
+    text += &types(names, found, "`LOOP` in the module in Rust");
+    let functions = functions(names, found);
     text += &functions.iter().map(|(about, signature)| format!("{about}{signature};\n")).collect::<Vec<_>>().join("\n");
     text + "\n#ifdef __cplusplus\n}\n#endif\n\n#endif\n"
 }
 
 /// The origin of the header, its content, and its guard.
-pub(super) fn opening(names: &Names, found: &InverseKinematics, origin: &Origin) -> String {
+pub(super) fn opening(names: &Names, of: &Solved, found: &InverseKinematics, origin: &Origin) -> String {
     let upper = &names.upper;
-    let text = said(&crate::emit::head::lines(
-        origin,
-        &[format!("Inverse kinematics: {}; at most {} solutions.", found.class, found.most)],
-    ));
+    let class = format!("Inverse kinematics: {}; at most {} solutions.", found.class, found.most);
+    let text = said(&crate::emit::head::lines(origin, &of.head().into_iter().chain([class]).collect::<Vec<_>>()));
     // No name of a robot makes a guard of this end: that of a header of functions ends in `_H`.
     let guard = format!("ARMGEN_{upper}_INVERSE_KINEMATICS");
     text + &format!("#ifndef {guard}\n#define {guard}\n\n")
@@ -155,8 +152,7 @@ fn spelled(name: &str) -> String {
     text
 }
 
-fn wrappers(module: &Module, found: &InverseKinematics, origin: &Origin) -> String {
-    let robot = prefix(module);
+fn wrappers(robot: &str, found: &InverseKinematics, origin: &Origin) -> String {
     let mut numbers = String::new();
     let mut verdicts = String::new();
     for (number, (name, _)) in VERDICTS.iter().enumerate() {

@@ -9,10 +9,8 @@ use super::standalone::{EPILOGUE, PROLOGUE};
 use crate::emit::plain::of_robot;
 use crate::emit::rust;
 use crate::emit::Origin;
-use crate::inverse_kinematics::InverseKinematics;
+use crate::inverse_kinematics::{InverseKinematics, Solved};
 use crate::kinds::Scalar;
-use crate::manipulator::Manipulator;
-use crate::program::Module;
 
 const NUMBERS: &str = include_str!("solver/numbers.h");
 const TABLE: &str = include_str!("solver/table.h");
@@ -95,30 +93,26 @@ const IN_ATAN2: [(&str, [&str; 2]); 22] = [
 
 /// The header. For an arm without a construction it is a comment with the reason. An error is a fault of this program: a block
 /// uses syntax that the translation does not know.
-pub fn print(
-    manipulator: &Manipulator,
-    scalar: Scalar,
-    found: &Result<InverseKinematics, String>,
-    origin: &Origin,
-) -> Result<String, String> {
-    let found = match found {
+pub fn print(of: &Solved, scalar: Scalar, origin: &Origin) -> Result<String, String> {
+    let found = match &of.found {
         Ok(found) => found,
         Err(reason) => {
-            return Ok(said(&crate::emit::head::lines(origin, &[format!("There is no inverse kinematics: {reason}.")])))
+            let notes = of.head().into_iter().chain([format!("There is no inverse kinematics: {reason}.")]);
+            return Ok(said(&crate::emit::head::lines(origin, &notes.collect::<Vec<_>>())));
         }
     };
-    let names = Names::of(&manipulator.name, scalar, manipulator.dof());
+    let names = Names::of(of, scalar);
     // Everything that is no caller's business has a longer name.
     let (inner, macros) = (format!("{}_ik", names.robot), format!("{}_IK", names.upper));
     let mut wanted = vec!["inverse_kinematics"];
     wanted.extend(found.redundancy.as_ref().map(|_| "inverse_kinematics_redundancy"));
     wanted.extend(["Solutions::within_limits", "Solutions::nearest_to"]);
-    let source = rust::items_of_inverse_kinematics(manipulator, scalar, found);
+    let source = rust::items_of_inverse_kinematics(&of.arm, scalar, found);
     let blocks = translated(&source, &wanted, &inner, &macros)
         .map_err(|reason| format!("inverse kinematics of this arm is not there in C, {reason}; this is a fault of armgen"))?;
     let own = |text: &str| of_robot(text, &inner, &macros);
 
-    let mut text = opening(&names, found, origin);
+    let mut text = opening(&names, of, found, origin);
     for header in ["float", "math", "stddef", "stdint", "string"] {
         text += &format!("#include <{header}.h>\n");
     }
@@ -187,11 +181,13 @@ fn faces(names: &Names, found: &InverseKinematics, inner: &str) -> String {
     text
 }
 
-/// The program that tests the header, for its user: postures found again at the poses of random ones.
-pub fn print_test(module: &Module, found: &InverseKinematics, [file, solver]: [&str; 2], origin: &Origin) -> String {
-    let names = Names::of(&module.name, module.scalar, module.joints.len());
+/// The program that tests the header of an arm with one end effector, for its user: postures found again at the poses of random ones. `None` where
+/// there is no construction.
+pub fn print_test(of: &Solved, scalar: Scalar, [file, solver]: [&str; 2], origin: &Origin) -> Option<String> {
+    let found = of.found.as_ref().ok()?;
+    let names = Names::of(of, scalar);
     // Units of rounding times a condition that most random postures have.
-    let (near, far, lost) = match module.scalar {
+    let (near, far, lost) = match scalar {
         Scalar::F64 => ("1e-9", "1e-5", "0"),
         Scalar::F32 => ("2e-3", "0.1", "complete / 500"),
     };
@@ -205,5 +201,5 @@ pub fn print_test(module: &Module, found: &InverseKinematics, [file, solver]: [&
         .replace("@module", file)
         .replace("@solver", solver);
     let text = text.replace("@redundancy", &redundancy).replace("@column", &column).replace("@near", near).replace("@far", far);
-    text.replace("@lost", lost).replace("@robot", &names.robot).replace("@ROBOT", &names.upper)
+    Some(text.replace("@lost", lost).replace("@robot", &names.robot).replace("@ROBOT", &names.upper))
 }

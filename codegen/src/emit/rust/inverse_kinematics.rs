@@ -9,24 +9,22 @@ use super::runtime::is_implemented;
 use super::signature::usize_literal;
 use super::{format, head};
 use crate::emit::Origin;
-use crate::inverse_kinematics::{Arrangement, Construction, Frame, InverseKinematics, Redundancy, Regional, Sums, Target};
+use crate::inverse_kinematics::{
+    Arrangement, Construction, Frame, InverseKinematics, Redundancy, Regional, Solved, Sums, Target,
+};
 use crate::kinds::{JointKind, Scalar};
 use crate::manipulator::Manipulator;
 use crate::program::Module;
 
 /// The module's text. For an arm without a construction it is a comment with the reason.
-pub fn print_inverse_kinematics(
-    manipulator: &Manipulator,
-    scalar: Scalar,
-    found: &Result<InverseKinematics, String>,
-    origin: &Origin,
-) -> String {
+pub fn print_inverse_kinematics(of: &Solved, scalar: Scalar, origin: &Origin) -> String {
     let lines = |text: &str| text.lines().map(|line| format!("// {line}\n")).collect::<String>();
-    match found {
-        Err(reason) => head(origin, &[]) + &lines(&format!("There is no `inverse_kinematics`: {reason}.")),
+    let head = head(origin, &[]) + &of.head().map_or_else(String::new, |line| lines(&line));
+    match &of.found {
+        Err(reason) => head + &lines(&format!("There is no `inverse_kinematics`: {reason}.")),
         Ok(found) => {
             let class = format!("Inverse kinematics: {}; at most {} solutions.\n", found.class, found.most);
-            head(origin, &[]) + &lines(&class) + "\n" + &format(exported(found)) + &solver(manipulator, scalar, found)
+            head + &lines(&class) + "\n" + &format(exported(found)) + &solver(&of.arm, scalar, found)
         }
     }
 }
@@ -112,10 +110,10 @@ pub fn print_inverse_kinematics_trait(module: &Module, found: &Result<InverseKin
 
 /// The tests of inverse kinematics, to follow the module's tests in `robot_test.rs`. `file` contains the module of inverse
 /// kinematics. Empty for an arm without a construction.
-pub fn print_inverse_kinematics_test(module: &Module, found: &Result<InverseKinematics, String>, file: &str) -> String {
-    let Ok(found) = found else { return String::new() };
+pub fn print_inverse_kinematics_test(of: &Solved, scalar: Scalar, file: &str) -> String {
+    let Ok(found) = &of.found else { return String::new() };
     // Units of rounding times a condition that most random postures have.
-    let (near, far) = match module.scalar {
+    let (near, far) = match scalar {
         Scalar::F64 => ("1e-9", "1e-5"),
         Scalar::F32 => ("2e-3", "0.1"),
     };
