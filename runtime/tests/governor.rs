@@ -53,7 +53,7 @@ fn governed<const N: usize>(
     let mut governor = Governor::new(timing, &mut storage).expect("an interval for each segment");
     let mut tally = Tally::default();
     let mut command = Command::Override(1.0);
-    let (mut s, mut since) = (f64::NEG_INFINITY, 0.0);
+    let (mut s, mut since, mut time) = (f64::NEG_INFINITY, 0.0, 0.0);
     loop {
         if next() < chance {
             let before = command;
@@ -69,6 +69,7 @@ fn governed<const N: usize>(
         let period = 2e-3 * next() + 1e-4;
         let at = governor.advance(Duration::from_secs_f64(period), command);
         since += period;
+        time += period;
         tally.samples += 1;
         assert!(at.progress.s >= s - 1e-12, "back from {s} to {}", at.progress.s);
         s = at.progress.s;
@@ -76,7 +77,10 @@ fn governed<const N: usize>(
         assert!(most <= 1.0 + 1e-9, "sample {} at {at:?} under {command:?}: {most}", tally.samples);
         tally.worst = tally.worst.max(most);
         match at.phase {
-            Phase::Ended => return tally,
+            Phase::Ended => {
+                assert!(time >= timing.lower_bound(), "{time} s are less than {} s", timing.lower_bound());
+                return tally;
+            }
             Phase::Held => {
                 assert!(command == Command::Stop && at.progress.ds == 0.0 && at.reference.ddq.amax() == 0.0, "{at:?}");
                 if since > 0.0 {
