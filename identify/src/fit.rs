@@ -173,6 +173,9 @@ pub fn solve_fast(gram: &Gram) -> DVector<f64> {
     }
 }
 
+/// The least spread of residuals over the torque of a joint. Its reciprocal is below [`LARGEST_CONDITION`].
+const LEAST_SPREAD: f64 = 1e-5;
+
 impl Equations {
     /// No row yet, with room for some whose columns all patterns together have.
     pub fn new(columns: usize, patterns: Vec<Pattern>, rows: usize, entries: usize) -> Equations {
@@ -253,8 +256,8 @@ impl Equations {
             .of_joints(residuals, joints, true)
             .iter()
             .zip(self.of_joints(&self.b, joints, true))
-            // An exact fit has residuals of rounding alone.
-            .map(|(of, size)| spread(of).max(1e-9 * rms(&size)).max(f64::MIN_POSITIVE.sqrt()))
+            // An exact fit has residuals of rounding alone: beside its weights, joints whose friction is not known yet would not count at all.
+            .map(|(of, size)| spread(of).max(LEAST_SPREAD * rms(&size)).max(f64::MIN_POSITIVE.sqrt()))
             .collect();
         let weight = |(row, residual): (&Row, &f64)| {
             let s = spreads[row.joint];
