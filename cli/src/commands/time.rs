@@ -10,6 +10,7 @@
 //! check.rs   trajectories of others against limits
 //! ```
 
+mod arc;
 mod arm;
 mod check;
 #[allow(dead_code)] // The list of all codes serves tools; the page and the tests name them.

@@ -10,8 +10,8 @@ use armgen_codegen::source::{Source, Span};
 use armgen_codegen::suggest::did_you_mean;
 use nalgebra::Vector3;
 
+use super::arc::Arc;
 use super::code::Code;
-use super::curve::Arc;
 
 /// How a path runs through its points.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]

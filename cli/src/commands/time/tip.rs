@@ -13,7 +13,8 @@ use armgen_evaluate::{program, Program, Workspace};
 use armgen_runtime::timing::Piece;
 use nalgebra::{DMatrix, DVector, Matrix3, Rotation3, SVector, Vector3, Vector6};
 
-use super::curve::{Arc, Origin, Pieces};
+use super::arc::Arc;
+use super::curve::{Origin, Pieces};
 use super::file::Tip;
 
 /// Places between two nodes at which the spline is compared with the curve.
