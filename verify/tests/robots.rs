@@ -1,6 +1,6 @@
 //! Verifies every robot of the project in both scalars; a certificate lets anyone verify again.
 
-use crate::{arms, common};
+use crate::common;
 
 use std::path::Path;
 
@@ -83,10 +83,25 @@ fn the_inverse_kinematics_of_every_robot_is_certified_or_says_why_not() {
     assert_eq!(without, ["counterbalance", "everything"]);
 }
 
+/// Two arms of a robot of the project on one base, the right one turned, with an end effector each.
+fn two_of(robot: &str) -> Source {
+    let text = common::source(robot).text().to_owned();
+    let (head, joints) = text.split_once("\njoints:\n").expect("joints");
+    let joints = joints.split("\nregressor:").next().expect("they come first");
+    let last = format!("joint{}", joints.matches("  - name: joint").count());
+    let places = [("left", "{xyz: [0, 0.3, 0.1]}"), ("right", "{xyz: [0.05, -0.3, 0.1], rpy: [0, 0.2, 0.7]}")];
+    let mounted = |(arm, place): (&str, &str)| {
+        let named = joints.replace("- name: joint", &format!("- name: {arm}_joint"));
+        named.replacen("_joint1\n", &format!("_joint1\n    parent: base\n    mount: {place}\n"), 1)
+    };
+    let tip = |(arm, _): (&str, &str)| format!("  - {{name: {arm}, joint: {arm}_{last}, tool: {{xyz: [0, 0.01, 0.1]}}}}\n");
+    Source::new("two.yaml", format!("{head}\njoints:\n{}tips:\n{}", places.map(mounted).concat(), places.map(tip).concat()))
+}
+
 /// A module of each end effector, in Rust and in C, is certified for that end effector and for no other.
 #[test]
 fn the_inverse_kinematics_of_each_end_effector_is_certified() {
-    let source = Source::new("two.yaml", arms::two_of("ur5").0);
+    let source = two_of("ur5");
     let functions = Selection::named(["left_direct_kinematics"]).expect("a function");
     let generated = common::generate_with(&source, &Options { functions, ..Options::default() });
     let ends: Vec<_> = generated.solvers().map(|solver| (solver.infix(), solver.text(), solver.in_c().expect("C"))).collect();

@@ -30,23 +30,6 @@ pub(crate) fn description(name: &str, task: &str, rows: &[(&str, &str, &str, &st
     format!("name: {name}\nconvention: standard\ngravity: [0, 0, -9.81]\n{task}\njoints:\n{joints}")
 }
 
-/// Two arms of a robot of the project on one base, the right one turned, with an end effector each; and each alone on its place of the base.
-pub(crate) fn two_of(robot: &str) -> (String, [(&'static str, String); 2]) {
-    let text = std::fs::read_to_string(workspace().join(format!("robots/{robot}.yaml"))).expect("a robot");
-    let (head, joints) = text.split_once("\njoints:\n").expect("joints");
-    let joints = joints.split("\nregressor:").next().expect("they come first");
-    let last = format!("joint{}", joints.matches("  - name: joint").count());
-    let places = [("left", "{xyz: [0, 0.3, 0.1]}"), ("right", "{xyz: [0.05, -0.3, 0.1], rpy: [0, 0.2, 0.7]}")];
-    let named = |arm: &str| joints.replace("- name: joint", &format!("- name: {arm}_joint"));
-    let mounted = |(arm, place): (&str, &str)| {
-        named(arm).replacen("_joint1\n", &format!("_joint1\n    parent: base\n    mount: {place}\n"), 1)
-    };
-    let tip = |arm: &str| format!("  - {{name: {arm}, joint: {arm}_{last}, tool: {{xyz: [0, 0.01, 0.1]}}}}\n");
-    let both = format!("{head}\njoints:\n{}tips:\n{}", places.map(mounted).concat(), places.map(|(arm, _)| tip(arm)).concat());
-    let alone = |(arm, place)| (arm, format!("{head}\nbase: {place}\ntool: {{xyz: [0, 0.01, 0.1]}}\njoints:\n{}", named(arm)));
-    (both, places.map(alone))
-}
-
 pub(crate) const R: &str = "revolute";
 pub(crate) const P: &str = "prismatic";
 
