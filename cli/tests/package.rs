@@ -213,7 +213,7 @@ fn cmake_and_ament_build_the_package_and_a_project_with_it() {
 
     // A workspace of the package and of a package that depends on it.
     if !installed::runs("colcon", &["--help"]) {
-        return installed::left_out("no `colcon` here (Debian: python3-colcon-cmake, python3-colcon-ros)");
+        return installed::left_out("no `colcon` here (Debian: colcon, python3-colcon-cmake, python3-colcon-ros)");
     }
     let workspace = folder.join("workspace");
     let controller = workspace.join("src/controller");
