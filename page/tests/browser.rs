@@ -129,7 +129,7 @@ fn coupled_joints_are_drawn_and_closed() {
     assert!(variables.iter().zip(expected).all(|(a, b)| (a - b).abs() < 1e-15), "{variables:?}");
     let frames = result["frames"].as_array().expect("frames");
     let names: Vec<&str> = frames.iter().map(|frame| frame[0].as_str().expect("a name")).collect();
-    assert_eq!(names, ["0", "1", "2", "3", "4", "e"]);
+    assert_eq!(names, ["0", "1", "2", "3", "4", "e", "rod_end", "forearm_back"]);
     let at = |k: usize| -> Vec<f64> {
         let text = frames[k][1].as_str().expect("an origin");
         text.split(' ').map(|x| x.parse().expect("m")).collect()
@@ -139,6 +139,8 @@ fn coupled_joints_are_drawn_and_closed() {
     near(at(4), -0.2 * crank.cos(), -0.2 * crank.sin());
     // The rod turns as the lower arm does, the forearm as the crank.
     near(at(5), 0.5 * lower.cos() + 0.6 * crank.cos(), 0.5 * lower.sin() + 0.6 * crank.sin());
+    // The loop is closed where both end effectors are drawn.
+    near(at(6), at(7)[0], at(7)[1]);
 }
 
 /// An arm without masses shows its frames and its Jacobian, but no dynamics.
