@@ -149,6 +149,26 @@ fn table<const N: usize>(
     assert!(largest <= 1e-3, "{name}: {largest}");
 }
 
+/// What storage holds from an earlier path is no part of the next.
+#[test]
+fn storage_of_an_earlier_path_changes_nothing() {
+    let (chain, (velocity, effort)) = (chain::ur5(), UR5_LIMITS);
+    let limits = Limits::velocity(velocity).and_then(|of| of.with_effort(effort.map(|x| -x), effort)).expect("limits");
+    let mut next = random(11);
+    let paths = [(); 2].map(|()| random_path(&mut next, [3.0; 6]));
+    let (mut nodes, mut segments) = (vec![Node::empty(); 2064], vec![Segment::empty(); 1001]);
+    for path in paths.iter().chain(&paths) {
+        let timed = |timing: Result<Timing<'_, f64, 6>, TimingError>| {
+            let timing = timing.expect("a timing");
+            (timing.segments(), timing.duration(), timing.lower_bound())
+        };
+        let ends = Ends { hold: false, ..Ends::at_rest() };
+        let work = Workspace { nodes: &mut nodes, segments: &mut segments };
+        let again = timed(time_optimal(&chain, path, &limits, ends, 1e-3, work));
+        assert_eq!(again, with_timing(&chain, path, &limits, ends, 1e-3, 1000, timed));
+    }
+}
+
 #[test]
 fn few_random_paths_are_timed_to_a_thousandth() {
     table("scara", &chain::scara(), SCARA_LIMITS, [FREE; 4], [2.5, 2.5, 0.3, 3.0], 2);

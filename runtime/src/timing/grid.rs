@@ -131,6 +131,9 @@ pub(super) fn build<T: RealField + Copy, R: PathDynamics<N, Real = T>, const N: 
         }
         first += 2 * n + 1;
     }
+    if let Some(end) = segments.get_mut(count) {
+        *end = Segment::empty();
+    }
     Ok((layout, count))
 }
 
@@ -205,7 +208,7 @@ pub(super) fn halve<T: RealField + Copy, R: PathDynamics<N, Real = T>, const N: 
         let middle = (left + right) * half;
         let (zero, one) = (T::zero(), T::one());
         for (ends, part) in [([middle, right], [half, one]), ([left, middle], [zero, half])] {
-            let mut of = Segment { ends, split: false, ..segment };
+            let mut of = Segment { ends, split: false, is_new: true, changed: true, ..segment };
             place(&mut of, piece, *distance, base);
             of.inner.law = segment.inner.law.part(part[0], part[1]);
             source.fill(&mut of);

@@ -28,7 +28,7 @@ impl<T: RealField + Copy> HalfPlane<T> {
     }
 }
 
-/// The forms of a row, at most 0 on the segment; `None` where its limit is infinite or cannot bind.
+/// The forms of row `index`, at most 0 on the segment; `None` where its limit is infinite or cannot bind.
 pub(super) fn of_row<T: RealField + Copy, const N: usize>(
     segment: &Segment<T, N>,
     index: usize,
@@ -37,45 +37,53 @@ pub(super) fn of_row<T: RealField + Copy, const N: usize>(
     assumed: &Assumed<T>,
     window: &Window<T>,
 ) -> Option<[Form<T>; 5]> {
-    let most = assumed.x[1];
     let row = segment.row(index, limits, friction, false)?;
-    let slack = row.bound.abs() * lit(ROUNDING) + row.m_error * assumed.u + row.v_error * most.sqrt() + row.d_error;
-    // Speed that the bound does not reach.
-    if index >= Segment::<T, N>::SLOPED && row.c.iter().all(|c| (*c + row.c_error) * most <= row.bound * lit(1.0 - 1e-6)) {
+    let is_speed = index >= Segment::<T, N>::SLOPED;
+    if is_speed && cannot_bind(&row, assumed) {
         return None;
     }
+    Some(forms(&row, segment.length, assumed, assumed.x[1].sqrt(), window))
+}
+
+/// Speed that the bound does not reach.
+fn cannot_bind<T: RealField + Copy>(row: &Row<T>, assumed: &Assumed<T>) -> bool {
+    row.c.iter().all(|c| (*c + row.c_error) * assumed.x[1] <= row.bound * lit(1.0 - 1e-6))
+}
+
+/// The forms of a row, at most 0; `root` is that of the largest x.
+#[inline]
+fn forms<T: RealField + Copy>(row: &Row<T>, h: T, assumed: &Assumed<T>, root: T, window: &Window<T>) -> [Form<T>; 5] {
+    let slack = row.bound.abs() * lit(ROUNDING) + row.m_error * assumed.u + row.v_error * root + row.d_error;
     // x >= 0, so the error of c is a part of c.
-    let mut row = Row { c: row.c.map(|c| c + row.c_error), ..row };
+    let mut row = Row { c: row.c.map(|c| c + row.c_error), ..*row };
     if row.is_curved() {
         row = row.straight(window, true);
     }
     let bound = row.bound - slack;
-    Some(row.forms(segment.length).map(|form| Form { rest: form.rest - bound, ..form }))
+    row.forms(h).map(|form| Form { rest: form.rest - bound, ..form })
 }
 
-/// The half-planes of the middle coefficient, of u and of the interval at the end, for k.
-pub(super) fn others<T: RealField + Copy>(h: T, k: T, assumed: &Assumed<T>, next: [T; 2]) -> [HalfPlane<T>; 8] {
+/// The half-planes of the middle coefficient, of u and of the interval at the end, for k: those from above and from below.
+fn others<T: RealField + Copy>(h: T, k: T, assumed: &Assumed<T>, next: [T; 2]) -> [[HalfPlane<T>; 4]; 2] {
     let (zero, one, half) = (T::zero(), T::one(), lit::<T>(0.5));
     let ([least, most], u) = (assumed.x, assumed.u);
     let (g, bend) = (half / h, k / h);
     let plane = |x0: T, x2: T, most: T| HalfPlane { x0, x2, most };
     [
-        plane(zero, one, next[1].min(most)),
-        plane(zero, -one, -next[0].max(least)),
-        plane(half, half, most - k),
-        plane(-half, -half, k - least),
-        plane(-g, g, u - bend),
-        plane(g, -g, u + bend),
-        plane(-g, g, u + bend),
-        plane(g, -g, u - bend),
+        [plane(zero, one, next[1].min(most)), plane(half, half, most - k), plane(-g, g, u - bend), plane(-g, g, u + bend)],
+        [plane(zero, -one, -next[0].max(least)), plane(-half, -half, k - least), plane(g, -g, u + bend), plane(g, -g, u - bend)],
     ]
 }
 
 /// The half-planes of a segment for one k.
 pub(super) struct HalfPlanes<T, const N: usize> {
-    /// In the order of the rows.
-    rows: [[Option<[HalfPlane<T>; 5]>; 5]; N],
-    others: [HalfPlane<T>; 8],
+    /// Of rows: those that bound X2 from above, first to last, and those that bound it from below, last to first.
+    rows: [[HalfPlane<T>; 25]; N],
+    /// Where the first end and the others begin.
+    ends: [usize; 2],
+    others: [[HalfPlane<T>; 4]; 2],
+    /// The X0 that planes without X2 allow.
+    alone: [T; 2],
 }
 
 impl<T: RealField + Copy, const N: usize> HalfPlanes<T, N> {
@@ -88,20 +96,50 @@ impl<T: RealField + Copy, const N: usize> HalfPlanes<T, N> {
         next: [T; 2],
     ) -> Self {
         let window = Window::new(assumed.x, assumed.touch);
-        let mut rows = [[None; 5]; N];
-        let places = rows.iter_mut().flatten();
-        for (index, to) in places.enumerate() {
-            let forms = of_row(segment, index, limits, friction, assumed, &window);
-            *to = forms.map(|forms| forms.map(|form| HalfPlane::of(&form, k)));
-        }
-        Self { rows, others: others(segment.length, k, assumed, next) }
+        let (zero, root, h) = (T::zero(), assumed.x[1].sqrt(), segment.length);
+        let mut rows = [[HalfPlane { x0: zero, x2: zero, most: zero }; 25]; N];
+        let places = rows.as_flattened_mut();
+        let mut ends = [0, places.len()];
+        let mut rest = Interval::new();
+        segment.each_row(limits, friction, false, |index, row| {
+            if index >= Segment::<T, N>::SLOPED && cannot_bind(&row, assumed) {
+                return;
+            }
+            for form in forms(&row, h, assumed, root, &window) {
+                let plane = HalfPlane::of(&form, k);
+                let place = if plane.x2 > zero {
+                    ends[0] += 1;
+                    ends[0] - 1
+                } else if plane.x2 < zero {
+                    ends[1] -= 1;
+                    ends[1]
+                } else {
+                    rest.cut(&plane, zero);
+                    continue;
+                };
+                if let Some(to) = places.get_mut(place) {
+                    *to = plane;
+                }
+            }
+        });
+        Self { rows, ends, others: others(h, k, assumed, next), alone: rest.alone }
     }
 
     /// The interval of X2 for an X0.
     pub(super) fn interval(&self, x0: T) -> Interval<T> {
-        let mut found = Interval::new();
-        for plane in self.rows.iter().flatten().flatten().flatten().chain(&self.others) {
-            found.cut(plane, x0);
+        let mut found = Interval { alone: self.alone, ..Interval::new() };
+        let rows = self.rows.as_flattened();
+        let [above, below] = &self.others;
+        for planes in [rows.get(..self.ends[0]).unwrap_or(&[]), above] {
+            for plane in planes {
+                found.lower(plane, x0);
+            }
+        }
+        for plane in rows.get(self.ends[1]..).unwrap_or(&[]).iter().rev() {
+            found.raise(plane, x0);
+        }
+        for plane in below {
+            found.raise(plane, x0);
         }
         found
     }
@@ -188,21 +226,38 @@ impl<T: RealField + Copy> Interval<T> {
         Self { low: (low, T::zero()), high: (high, T::zero()), ..Self::new() }
     }
 
-    /// Takes what a plane leaves; which end of the interval it moves. It divides only where it moves one.
+    /// Takes what a plane with x2 > 0 leaves; whether it moves the upper end. It divides only where it does.
+    #[inline]
+    fn lower(&mut self, plane: &HalfPlane<T>, x0: T) -> bool {
+        let room = plane.most - plane.x0 * x0;
+        let moves = room < self.high.0 * plane.x2;
+        if moves {
+            self.high = (room / plane.x2, -plane.x0 / plane.x2);
+        }
+        moves
+    }
+
+    /// The same with x2 < 0 and the lower end.
+    #[inline]
+    fn raise(&mut self, plane: &HalfPlane<T>, x0: T) -> bool {
+        let room = plane.most - plane.x0 * x0;
+        let moves = room < self.low.0 * plane.x2;
+        if moves {
+            self.low = (room / plane.x2, -plane.x0 / plane.x2);
+        }
+        moves
+    }
+
+    /// Takes what a plane leaves; which end of the interval it moves.
     pub(super) fn cut(&mut self, plane: &HalfPlane<T>, x0: T) -> Option<usize> {
         let zero = T::zero();
-        let room = plane.most - plane.x0 * x0;
         if plane.x2 > zero {
-            if room < self.high.0 * plane.x2 {
-                self.high = (room / plane.x2, -plane.x0 / plane.x2);
-                return Some(1);
-            }
-        } else if plane.x2 < zero {
-            if room < self.low.0 * plane.x2 {
-                self.low = (room / plane.x2, -plane.x0 / plane.x2);
-                return Some(0);
-            }
-        } else if plane.x0 > zero {
+            return self.lower(plane, x0).then_some(1);
+        }
+        if plane.x2 < zero {
+            return self.raise(plane, x0).then_some(0);
+        }
+        if plane.x0 > zero {
             self.alone[1] = self.alone[1].min(plane.most / plane.x0);
         } else if plane.x0 < zero {
             self.alone[0] = self.alone[0].max(plane.most / plane.x0);

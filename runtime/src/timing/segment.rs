@@ -76,6 +76,12 @@ pub struct Segment<T, const N: usize> {
     /// Time at which it begins, s.
     pub(super) time: T,
     pub(super) split: bool,
+    /// Whether its functions are new since the last bounds.
+    pub(super) is_new: bool,
+    /// Whether functions or bounds are others than those of which the law was made.
+    pub(super) changed: bool,
+    /// Whether the last pass made the interval anew.
+    pub(super) fresh: bool,
 }
 
 /// What no motion exceeds: at the left end, and over the segment.
@@ -142,6 +148,9 @@ impl<T: RealField + Copy, const N: usize> Segment<T, N> {
             inner: Inner { interval: [zero; 2], law, trial: [zero; 2], assumed: Assumed { x: [zero; 2], touch: zero, u: zero } },
             time: zero,
             split: false,
+            is_new: true,
+            changed: true,
+            fresh: true,
         }
     }
 
@@ -189,58 +198,102 @@ impl<T: RealField + Copy, const N: usize> Segment<T, N> {
         friction: &[JointFriction<T>; N],
         relaxed: bool,
     ) -> Option<Row<T>> {
-        let zero = [T::zero(); 3];
         let (group, joint) = (index / (2 * N), (index % (2 * N)) / 2);
-        if group == 2 {
-            let joint = index - 4 * N;
-            let limit = *limits.velocity.get(joint)?;
-            let square = self.rates[2].get(joint)?;
-            return limit.is_finite().then(|| Row {
-                m: zero,
-                c: square.quadratic,
-                v: zero,
-                d: zero,
-                m_error: T::zero(),
-                c_error: square.error,
-                v_error: T::zero(),
-                d_error: T::zero(),
-                bound: limit * limit,
-                curve: None,
-            });
+        match group {
+            0 => self.torque(joint, index % 2, limits.effort.get(joint)?, friction.get(joint)?, relaxed),
+            1 => self.acceleration(joint, index % 2, *limits.acceleration.get(joint)?),
+            _ => self.speed(index - 4 * N, *limits.velocity.get(index - 4 * N)?),
         }
-        let side = if index.is_multiple_of(2) { T::one() } else { -T::one() };
+    }
+
+    /// Calls `with` with each row and its index, in order.
+    #[inline]
+    pub(super) fn each_row(
+        &self,
+        limits: &Limits<T, N>,
+        friction: &[JointFriction<T>; N],
+        relaxed: bool,
+        mut with: impl FnMut(usize, Row<T>),
+    ) {
+        for (joint, (effort, friction)) in limits.effort.iter().zip(friction).enumerate() {
+            for side in 0..2 {
+                if let Some(row) = self.torque(joint, side, effort, friction, relaxed) {
+                    with(2 * joint + side, row);
+                }
+            }
+        }
+        for (joint, limit) in limits.acceleration.iter().enumerate() {
+            for side in 0..2 {
+                if let Some(row) = self.acceleration(joint, side, *limit) {
+                    with(2 * (N + joint) + side, row);
+                }
+            }
+        }
+        for (joint, limit) in limits.velocity.iter().enumerate() {
+            if let Some(row) = self.speed(joint, *limit) {
+                with(4 * N + joint, row);
+            }
+        }
+    }
+
+    /// |dq| at most `limit`, squared.
+    #[inline]
+    fn speed(&self, joint: usize, limit: T) -> Option<Row<T>> {
+        let zero = [T::zero(); 3];
+        let square = self.rates[2].get(joint)?;
+        limit.is_finite().then(|| Row {
+            m: zero,
+            c: square.quadratic,
+            v: zero,
+            d: zero,
+            m_error: T::zero(),
+            c_error: square.error,
+            v_error: T::zero(),
+            d_error: T::zero(),
+            bound: limit * limit,
+            curve: None,
+        })
+    }
+
+    /// ddq at most `limit`, or at least -`limit`.
+    #[inline]
+    fn acceleration(&self, joint: usize, side: usize, limit: T) -> Option<Row<T>> {
+        let zero = [T::zero(); 3];
+        let side = if side == 0 { T::one() } else { -T::one() };
         let signed = |q: Quadratic<T>| q.map(|x| x * side);
-        if group == 1 {
-            let limit = *limits.acceleration.get(joint)?;
-            let [rate, curvature] = [self.rates[0].get(joint)?, self.rates[1].get(joint)?];
-            return limit.is_finite().then(|| Row {
-                m: signed(rate.quadratic),
-                c: signed(curvature.quadratic),
-                v: zero,
-                d: zero,
-                m_error: rate.error,
-                c_error: curvature.error,
-                v_error: T::zero(),
-                d_error: T::zero(),
-                bound: limit,
-                curve: None,
-            });
-        }
-        let [low, high] = *limits.effort.get(joint)?;
-        let bound = if index.is_multiple_of(2) { high } else { -low };
+        let [rate, curvature] = [self.rates[0].get(joint)?, self.rates[1].get(joint)?];
+        limit.is_finite().then(|| Row {
+            m: signed(rate.quadratic),
+            c: signed(curvature.quadratic),
+            v: zero,
+            d: zero,
+            m_error: rate.error,
+            c_error: curvature.error,
+            v_error: T::zero(),
+            d_error: T::zero(),
+            bound: limit,
+            curve: None,
+        })
+    }
+
+    /// The torque at most its upper limit, or at least its lower one.
+    #[inline]
+    fn torque(&self, joint: usize, side: usize, effort: &[T; 2], of: &JointFriction<T>, relaxed: bool) -> Option<Row<T>> {
+        let [low, high] = *effort;
+        let (side, bound) = if side == 0 { (T::one(), high) } else { (-T::one(), -low) };
         if !bound.is_finite() {
             return None;
         }
+        let signed = |q: Quadratic<T>| q.map(|x| x * side);
         let [m, c, g] = [self.torques[0].get(joint)?, self.torques[1].get(joint)?, self.torques[2].get(joint)?];
-        let rate = self.rates[0].get(joint)?;
-        let of = friction.get(joint)?;
+        let [rate, square] = [self.rates[0].get(joint)?, self.rates[2].get(joint)?];
         let sign = *self.signs.get(joint)?;
         let curve = (of.has_curve() && sign != T::zero()).then(|| Curve {
             cubic: of.cubic * side * sign,
             stribeck: of.stribeck * side * sign,
             velocity: of.stribeck_velocity,
-            square: self.rates[2].get(joint).map_or(zero, |square| square.quadratic),
-            error: self.rates[2].get(joint).map_or(T::zero(), |square| square.error),
+            square: square.quadratic,
+            error: square.error,
         });
         let mut d = signed(g.quadratic).map(|g| g + side * (sign * of.coulomb + of.offset));
         let mut d_error = g.error;
@@ -257,7 +310,7 @@ impl<T: RealField + Copy, const N: usize> Segment<T, N> {
                 // |g| is convex: its values at the Bernstein coefficients bound it from above.
                 g.quadratic.map(|g| g.abs())
             } else {
-                zero
+                [T::zero(); 3]
             };
             for (d, size) in d.iter_mut().zip(size) {
                 *d += load * size;

@@ -9,7 +9,7 @@ use super::model::{JointFriction, PathDynamics};
 use super::outer::{self, NodeBound};
 use super::path::{number, JointPath, Piece};
 use super::polynomial;
-use super::segment::{limit, Assumed, Interpolation, Node, Segment};
+use super::segment::{limit, Assumed, Barrier, Interpolation, Node, Segment};
 use super::timed::Timing;
 use crate::linalg::lit;
 use nalgebra::RealField;
@@ -177,8 +177,14 @@ impl<T: RealField + Copy, const N: usize> Solver<'_, T, N> {
         };
         for i in 0..segments.len() {
             let (left, right) = (i.checked_sub(1).and_then(|i| segments.get(i)), segments.get(i).filter(|_| i < count));
+            if ![left, right].into_iter().flatten().any(|segment| segment.is_new) {
+                continue;
+            }
             match outer::node_bound(left, right, self.limits, self.friction) {
-                NodeBound::AtMost(x) => segments[i].bound.node = x,
+                NodeBound::AtMost(x) => {
+                    segments[i].changed |= x != segments[i].bound.node;
+                    segments[i].bound.node = x;
+                }
                 NodeBound::Nothing(index) => {
                     let (limit, joint) = limit(index, N);
                     let Some((segment, end)) = beside(segments, i) else { continue };
@@ -200,10 +206,15 @@ impl<T: RealField + Copy, const N: usize> Solver<'_, T, N> {
         for i in 0..count {
             let Some([segment, next, ..]) = segments.get_mut(i..) else { break };
             let next = next.bound.node;
-            segment.bound.forward = x;
-            let barrier = outer::least(segment, self.limits, self.friction, x, false);
-            segment.bound.barriers[0] = barrier;
-            segment.bound.barriers[2] = outer::speed(segment, self.limits, self.friction);
+            if segment.is_new {
+                segment.bound.barriers[2] = outer::speed(segment, self.limits, self.friction);
+            }
+            if segment.is_new || x != segment.bound.forward {
+                segment.changed = true;
+                segment.bound.forward = x;
+                segment.bound.barriers[0] = outer::least(segment, self.limits, self.friction, x, false);
+            }
+            let barrier = segment.bound.barriers[0];
             let reached = barrier.map_or(next, |b| b.law.x2);
             if let Some(barrier) = barrier.filter(|b| b.law.x2 < T::zero()) {
                 let (limit, joint) = limit(barrier.row, N);
@@ -218,6 +229,7 @@ impl<T: RealField + Copy, const N: usize> Solver<'_, T, N> {
             x = next.min(reached);
         }
         if let Some(last) = segments.last_mut() {
+            last.changed |= x != last.bound.forward;
             last.bound.forward = x;
         }
         if let Some((segment, _)) = beside(segments, count).filter(|_| end > x * lit(1.0 + 1e-9)) {
@@ -226,13 +238,20 @@ impl<T: RealField + Copy, const N: usize> Solver<'_, T, N> {
             let (speed, needed) = (number(x.sqrt()), number(end.sqrt()));
             return Err(at(segment, true, TimingFault::InfeasibleSpeed { joint, limit, speed, needed, proved: true }));
         }
+        let mut before = x;
         if let Some(last) = segments.last_mut() {
             x = last.bound.node.min(end);
+            before = last.bound.backward;
+            last.changed |= x != before;
             last.bound.backward = x;
         }
         for segment in segments.iter_mut().take(count).rev() {
-            let barrier = outer::least(segment, self.limits, self.friction, x, true);
-            segment.bound.barriers[1] = barrier.map(|b| super::segment::Barrier { law: reversed(&b.law), row: b.row });
+            if segment.is_new || x != before {
+                segment.changed = true;
+                let barrier = outer::least(segment, self.limits, self.friction, x, true);
+                segment.bound.barriers[1] = barrier.map(|b| Barrier { law: reversed(&b.law), ..b });
+            }
+            let barrier = segment.bound.barriers[1].map(|b| Barrier { law: reversed(&b.law), ..b });
             let reached = barrier.map_or(segment.bound.node, |b| b.law.x2);
             if let Some(barrier) = barrier.filter(|b| b.law.x2 < T::zero()) {
                 let (limit, joint) = limit(barrier.row, N);
@@ -245,7 +264,10 @@ impl<T: RealField + Copy, const N: usize> Solver<'_, T, N> {
                 });
             }
             x = segment.bound.node.min(reached);
+            before = segment.bound.backward;
+            segment.changed |= x != before;
             segment.bound.backward = x;
+            segment.is_new = false;
         }
         if let Some(segment) = segments.first().filter(|_| start > x * lit(1.0 + 1e-9)) {
             let (limit, joint) =
@@ -272,14 +294,16 @@ impl<T: RealField + Copy, const N: usize> Solver<'_, T, N> {
     /// A motion that keeps all rows. `known`: the laws of the segments are those of a coarser grid.
     fn inner(&self, segments: &mut [Segment<T, N>], known: bool) -> Result<(), Stuck> {
         if !self.curved {
-            return self.pass(segments, Assume::Bound);
+            self.pass(segments, Assume::Bound, known)?;
+        } else if !(known && self.pass(segments, Assume::Share(lit(0.97)), true).is_ok()) {
+            self.pass(segments, Assume::Bound, false)?;
+            // From one law the next: a pass that fails leaves the law of the last one.
+            let _ = self.pass(segments, Assume::Share(lit(0.9)), false);
+            let _ = self.pass(segments, Assume::Share(lit(0.99)), false);
         }
-        if !(known && self.pass(segments, Assume::Share(lit(0.97))).is_ok()) {
-            self.pass(segments, Assume::Bound)?;
+        for segment in segments {
+            segment.changed = false;
         }
-        // From one law the next: a pass that fails leaves the law of the last one.
-        let _ = self.pass(segments, Assume::Share(lit(0.9)));
-        let _ = self.pass(segments, Assume::Share(lit(0.99)));
         Ok(())
     }
 
@@ -307,13 +331,27 @@ impl<T: RealField + Copy, const N: usize> Solver<'_, T, N> {
         Assumed { x: [least, most], touch: middle.max(most * lit(1e-9)).max(lit(1e-30)), u: u * lit(3.0) }
     }
 
-    fn pass(&self, segments: &mut [Segment<T, N>], assume: Assume<T>) -> Result<(), Stuck> {
+    /// Intervals backwards, the law forwards. With `local` a segment keeps what it has as long as nothing that it depends on has changed.
+    fn pass(&self, segments: &mut [Segment<T, N>], assume: Assume<T>, local: bool) -> Result<(), Stuck> {
         let count = segments.len() - 1;
         let zero = T::zero();
         let [start, end] = self.ends.speed.map(|v| v * v);
         let mut next = [end, end];
+        let mut before = next;
         let mut failed = None;
         for i in (0..count).rev() {
+            let near = segments.get(i.saturating_sub(1)..(i + 3).min(count + 1)).unwrap_or(&[]);
+            let keeps = local && next == before && !near.iter().any(|of| of.changed);
+            if let Some(segment) = segments.get_mut(i) {
+                segment.fresh = !keeps;
+                before = segment.inner.interval;
+                if keeps {
+                    segment.inner.trial = before;
+                    segment.time = segment.inner.law.k;
+                    next = before;
+                    continue;
+                }
+            }
             let bound = |i: usize| segments.get(i).map(|segment| segment.bound.x());
             let (Some(here), Some(after)) = (bound(i), bound(i + 1)) else { continue };
             let before = i.checked_sub(1).and_then(bound).unwrap_or(here);
@@ -359,7 +397,11 @@ impl<T: RealField + Copy, const N: usize> Solver<'_, T, N> {
             let Some([segment, after, ..]) = segments.get_mut(i..) else { break };
             let next = if i + 1 < count { after.inner.trial } else { [end, end] };
             let after = after.bound.x();
-            let assumed = self.assumed(segment, after, assume);
+            if !segment.fresh && x == segment.inner.law.x0 {
+                x = segment.inner.law.x2;
+                continue;
+            }
+            let assumed = if segment.fresh { self.assumed(segment, after, assume) } else { segment.inner.assumed };
             let k = segment.time;
             let planes = HalfPlanes::new(segment, self.limits, self.friction, k, &assumed, next);
             let to = planes.forwards(x).min(next[1]).max(next[0]);
@@ -445,7 +487,7 @@ impl<T: RealField + Copy, const N: usize> Solver<'_, T, N> {
 
 /// The least time in which a motion passes a segment.
 fn lower<T: RealField + Copy, const N: usize>(segment: &Segment<T, N>) -> T {
-    let of = |barrier: &super::segment::Barrier<T>| {
+    let of = |barrier: &Barrier<T>| {
         let time = barrier.law.duration();
         if time.is_finite() {
             time
@@ -457,7 +499,7 @@ fn lower<T: RealField + Copy, const N: usize>(segment: &Segment<T, N>) -> T {
 }
 
 /// Barriers' laws, the least in the middle first.
-fn order<T: RealField + Copy>(barriers: &[Option<super::segment::Barrier<T>>; 3]) -> [Option<Law<T>>; 3] {
+fn order<T: RealField + Copy>(barriers: &[Option<Barrier<T>>; 3]) -> [Option<Law<T>>; 3] {
     let mut laws = barriers.map(|barrier| barrier.map(|b| b.law));
     let middle = |law: &Option<Law<T>>| law.map_or(lit(1e30), |law| law.x(lit(0.5)));
     for i in [0, 1, 0] {
