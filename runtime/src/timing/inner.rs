@@ -8,7 +8,7 @@
 use super::limits::Limits;
 use super::model::JointFriction;
 use super::outer::ROUNDING;
-use super::row::{Form, Row, Window};
+use super::row::{least, most, Form, Quadratic, Row, Window};
 use super::segment::{Assumed, Segment};
 use crate::linalg::lit;
 use nalgebra::RealField;
@@ -38,29 +38,24 @@ pub(super) fn of_row<T: RealField + Copy, const N: usize>(
     window: &Window<T>,
 ) -> Option<[Form<T>; 5]> {
     let row = segment.row(index, limits, friction, false)?;
-    let is_speed = index >= Segment::<T, N>::SLOPED;
-    if is_speed && cannot_bind(&row, assumed) {
-        return None;
-    }
-    Some(forms(&row, segment.length, assumed, assumed.x[1].sqrt(), window))
+    let row = binding(&row, assumed, assumed.x[1].sqrt(), window)?;
+    Some(row.forms(segment.length).map(|form| Form { rest: form.rest - row.bound, ..form }))
 }
 
-/// Speed that the bound does not reach.
-fn cannot_bind<T: RealField + Copy>(row: &Row<T>, assumed: &Assumed<T>) -> bool {
-    row.c.iter().all(|c| (*c + row.c_error) * assumed.x[1] <= row.bound * lit(1.0 - 1e-6))
-}
-
-/// The forms of a row, at most 0; `root` is that of the largest x.
+/// The row as lines over x, with all errors in its limit; `None` where nothing that is assumed breaks it. `root` is that of the largest x.
 #[inline]
-fn forms<T: RealField + Copy>(row: &Row<T>, h: T, assumed: &Assumed<T>, root: T, window: &Window<T>) -> [Form<T>; 5] {
-    let slack = row.bound.abs() * lit(ROUNDING) + row.m_error * assumed.u + row.v_error * root + row.d_error;
+fn binding<T: RealField + Copy>(row: &Row<T>, assumed: &Assumed<T>, root: T, window: &Window<T>) -> Option<Row<T>> {
+    let ([_, most_x], u) = (assumed.x, assumed.u);
     // x >= 0, so the error of c is a part of c.
     let mut row = Row { c: row.c.map(|c| c + row.c_error), ..*row };
+    let slack = row.bound.abs() * lit(ROUNDING) + row.m_error * u + row.v_error * root + row.d_error;
     if row.is_curved() {
         row = row.straight(window, true);
     }
-    let bound = row.bound - slack;
-    row.forms(h).map(|form| Form { rest: form.rest - bound, ..form })
+    let largest = |[a, b, c]: Quadratic<T>| most(most(a, b), c);
+    let reaches = largest(row.m.map(|m| m.abs())) * u + most(largest(row.c), T::zero()) * most_x + largest(row.d);
+    row.bound -= slack;
+    (!(reaches <= row.bound * lit(1.0 - 1e-6))).then_some(row)
 }
 
 /// The half-planes of the middle coefficient, of u and of the interval at the end, for k: those from above and from below.
@@ -101,12 +96,10 @@ impl<T: RealField + Copy, const N: usize> HalfPlanes<T, N> {
         let places = rows.as_flattened_mut();
         let mut ends = [0, places.len()];
         let mut rest = Interval::new();
-        segment.each_row(limits, friction, false, |index, row| {
-            if index >= Segment::<T, N>::SLOPED && cannot_bind(&row, assumed) {
-                return;
-            }
-            for form in forms(&row, h, assumed, root, &window) {
-                let plane = HalfPlane::of(&form, k);
+        let mut add = |row: Option<Row<T>>| {
+            let Some(row) = row.and_then(|row| binding(&row, assumed, root, &window)) else { return };
+            for form in row.forms(h) {
+                let plane = HalfPlane::of(&Form { rest: form.rest - row.bound, ..form }, k);
                 let place = if plane.x2 > zero {
                     ends[0] += 1;
                     ends[0] - 1
@@ -121,7 +114,25 @@ impl<T: RealField + Copy, const N: usize> HalfPlanes<T, N> {
                     *to = plane;
                 }
             }
-        });
+        };
+        // Most rows cannot bind, and most of these show it before they are made.
+        let share = lit::<T>(1.0 - 1e-6);
+        for (joint, (effort, of)) in limits.effort.iter().zip(friction).enumerate() {
+            let torque = segment.largest_torque(joint, of, assumed.u, root);
+            if torque.is_none_or(|torque| !(torque <= least(-effort[0], effort[1]) * share)) {
+                add(segment.torque(joint, 0, effort, of, false));
+                add(segment.torque(joint, 1, effort, of, false));
+            }
+        }
+        for (joint, limit) in limits.acceleration.iter().enumerate().filter(|(_, limit)| limit.is_finite()) {
+            add(segment.acceleration(joint, 0, *limit));
+            add(segment.acceleration(joint, 1, *limit));
+        }
+        for (joint, (limit, square)) in limits.velocity.iter().zip(&segment.rates[2]).enumerate() {
+            if !(square.size() * assumed.x[1] <= *limit * *limit * share) {
+                add(segment.speed(joint, *limit));
+            }
+        }
         Self { rows, ends, others: others(h, k, assumed, next), alone: rest.alone }
     }
 

@@ -25,12 +25,12 @@ fn huge<T: RealField>() -> T {
 /// A row at a node.
 #[derive(Clone, Copy)]
 struct AtNode<T> {
+    index: usize,
     m: T,
     c: T,
     v: T,
     rest: T,
     m_error: T,
-    curve: Option<Curve<T>>,
 }
 
 /// What a node allows.
@@ -49,49 +49,34 @@ pub(super) fn node_bound<T: RealField + Copy, const N: usize>(
     limits: &Limits<T, N>,
     friction: &[JointFriction<T>; N],
 ) -> NodeBound<T> {
+    let sides = [(left, 2), (right, 0)];
     let mut x = huge::<T>();
-    let empty = AtNode { m: T::zero(), c: T::zero(), v: T::zero(), rest: huge(), m_error: T::zero(), curve: None };
-    let mut rows = [[[empty; 4]; N]; 2];
-    let mut curved = false;
-    for (side, (segment, at_end)) in rows.iter_mut().zip([(left, true), (right, false)]) {
-        let Some(segment) = segment else { continue };
-        let here = |[start, _, end]: [T; 3]| if at_end { end } else { start };
-        for index in 0..Segment::<T, N>::ROWS {
-            let Some(row) = segment.row(index, limits, friction, true) else { continue };
-            let slack = row.bound.abs() * lit(ROUNDING);
-            if index >= Segment::<T, N>::SLOPED {
-                let c = here(row.c) - row.c_error;
-                if c > T::zero() {
-                    x = x.min((row.bound + slack) / c);
-                }
-                continue;
-            }
-            let at = AtNode {
-                m: here(row.m),
-                c: here(row.c) - row.c_error,
-                v: here(row.v),
-                rest: row.bound + slack + row.d_error - here(row.d),
-                m_error: row.m_error,
-                curve: row.curve.map(|curve| curve.at(if at_end { 2 } else { 0 })),
-            };
-            curved |= row.is_curved();
-            if let Some(of) = side.get_mut(index / 4) {
-                of[index % 4] = at;
+    for (segment, end) in sides {
+        let squares = segment.into_iter().flat_map(|segment| &segment.rates[2]);
+        for (square, limit) in squares.zip(&limits.velocity) {
+            let c = square.quadratic[end] - square.error;
+            if c > T::zero() {
+                let bound = *limit * *limit;
+                x = x.min((bound + bound * lit(ROUNDING)) / c);
             }
         }
     }
     // u may jump at a node, as q'' and the signs of friction do: each side has an interval of its own.
-    for side in &mut rows {
+    for (segment, end) in sides {
+        let Some(segment) = segment else { continue };
+        let mut side = Side::new(segment, end, limits, friction);
         // A first solution tells how large u is, and so how much the errors of m count.
-        let (first, u) = largest(side, x, curved);
-        for row in side.iter_mut().flatten() {
-            row.rest += row.m_error * u * lit(2.0);
-        }
+        let (first, u) = side.largest(x);
         let from = match first {
+            // With these errors no row bounds more than without.
+            NodeBound::AtMost(first) if first == x => continue,
             NodeBound::AtMost(first) => x.min(first.max(T::zero()) * lit(1.0 + 1e-6)),
             NodeBound::Nothing(_) => x,
         };
-        match largest(side, from, curved).0 {
+        for row in side.rows.as_flattened_mut() {
+            row.rest += row.m_error * u * lit(2.0);
+        }
+        match side.largest(from).0 {
             NodeBound::AtMost(most) => x = most,
             nothing @ NodeBound::Nothing(_) => return nothing,
         }
@@ -99,77 +84,120 @@ pub(super) fn node_bound<T: RealField + Copy, const N: usize>(
     NodeBound::AtMost(x)
 }
 
-/// Newton from the right on the width of the interval of u, and |u| there.
-fn largest<T: RealField + Copy, const N: usize>(side: &[[AtNode<T>; 4]; N], mut x: T, curved: bool) -> (NodeBound<T>, T) {
-    // With friction that is no line the width is bounded from above on [x (1 - share), x].
-    let mut share = T::one();
-    let mut size = T::zero();
-    for _ in 0..200 {
-        let low = if curved { x * (T::one() - share) } else { T::zero() };
-        let (above, below) = (Line::tangent(x.max(lit(1e-30)).sqrt()), Line::chord(low, x));
-        let mut high: (T, T, usize) = (huge(), T::zero(), 0);
-        let mut least: (T, T, usize) = (-huge::<T>(), T::zero(), 0);
-        let mut flat: Option<(T, usize)> = None;
-        for (index, row) in side.iter().flatten().enumerate() {
-            if row.rest >= huge() {
-                continue;
+/// The rows with a slope at an end of a segment.
+struct Side<T, const N: usize> {
+    /// `count` of them.
+    rows: [[AtNode<T>; 4]; N],
+    count: usize,
+    curves: [[Option<Curve<T>>; 4]; N],
+    curved: bool,
+}
+
+impl<T: RealField + Copy, const N: usize> Side<T, N> {
+    fn new(segment: &Segment<T, N>, end: usize, limits: &Limits<T, N>, friction: &[JointFriction<T>; N]) -> Self {
+        let zero = T::zero();
+        let empty = AtNode { index: 0, m: zero, c: zero, v: zero, rest: zero, m_error: zero };
+        let mut side = Self { rows: [[empty; 4]; N], count: 0, curves: [[None; 4]; N], curved: false };
+        segment.each_row(limits, friction, true, |index, row| {
+            if index >= Segment::<T, N>::SLOPED {
+                return;
             }
-            let line = if row.v > T::zero() { below } else { above };
-            let (mut c, mut rest) = (row.c + row.v * line.slope, row.rest - row.v * line.height);
-            if let Some(curve) = &row.curve {
-                let (line, rounding) = curve.line([low, x], x, false);
-                c += line.slope * curve.square[0];
-                rest -= line.height - rounding;
+            let at = AtNode {
+                index,
+                m: row.m[end],
+                c: row.c[end] - row.c_error,
+                v: row.v[end],
+                rest: row.bound + row.bound.abs() * lit(ROUNDING) + row.d_error - row.d[end],
+                m_error: row.m_error,
+            };
+            if row.is_curved() {
+                side.curved = true;
+                if let Some(curve) = side.curves.as_flattened_mut().get_mut(side.count) {
+                    *curve = row.curve.map(|curve| curve.at(end));
+                }
             }
-            if row.m == T::zero() {
-                // No u helps: c x <= rest.
-                if c * x > rest {
-                    let at = if c > T::zero() { rest / c } else { -T::one() };
-                    if flat.is_none_or(|(most, _)| at < most) {
-                        flat = Some((at, index));
+            if let Some(to) = side.rows.as_flattened_mut().get_mut(side.count) {
+                *to = at;
+            }
+            side.count += 1;
+        });
+        side
+    }
+
+    /// Newton from the right on the width of the interval of u, and |u| there.
+    fn largest(&self, mut x: T) -> (NodeBound<T>, T) {
+        let curved = self.curved;
+        // With friction that is no line the width is bounded from above on [x (1 - share), x].
+        let mut share = T::one();
+        let mut size = T::zero();
+        for _ in 0..200 {
+            let low = if curved { x * (T::one() - share) } else { T::zero() };
+            let (above, below) = (Line::tangent(x.max(lit(1e-30)).sqrt()), Line::chord(low, x));
+            let mut high: (T, T, usize) = (huge(), T::zero(), 0);
+            let mut least: (T, T, usize) = (-huge::<T>(), T::zero(), 0);
+            let mut flat: Option<(T, usize)> = None;
+            let rows = self.rows.as_flattened().get(..self.count).unwrap_or(&[]);
+            for (row, curve) in rows.iter().zip(self.curves.as_flattened()) {
+                let (index, mut c, mut rest) = (row.index, row.c, row.rest);
+                if curved {
+                    let line = if row.v > T::zero() { below } else { above };
+                    (c, rest) = (c + row.v * line.slope, rest - row.v * line.height);
+                    if let Some(curve) = curve {
+                        let (line, rounding) = curve.line([low, x], x, false);
+                        c += line.slope * curve.square[0];
+                        rest -= line.height - rounding;
                     }
                 }
+                if row.m == T::zero() {
+                    // No u helps: c x <= rest.
+                    if c * x > rest {
+                        let at = if c > T::zero() { rest / c } else { -T::one() };
+                        if flat.is_none_or(|(most, _)| at < most) {
+                            flat = Some((at, index));
+                        }
+                    }
+                    continue;
+                }
+                let (u, slope) = ((rest - c * x) / row.m, -c / row.m);
+                if row.m > T::zero() {
+                    if u < high.0 {
+                        high = (u, slope, index);
+                    }
+                } else if u > least.0 {
+                    least = (u, slope, index);
+                }
+            }
+            size = if high.0 < huge() { high.0.abs() } else { T::zero() };
+            size = size.max(if least.0 > -huge::<T>() { least.0.abs() } else { T::zero() });
+            let width = high.0 - least.0;
+            let (mut next, mut culprit) = (x, high.2);
+            if let Some((at, index)) = flat {
+                (next, culprit) = (at, index);
+            } else if width < T::zero() {
+                let slope = high.1 - least.1;
+                // The row that gravity or friction breaks by itself is the one with the smaller share of m.
+                if least.1.abs() > high.1.abs() {
+                    culprit = least.2;
+                }
+                next = if slope < T::zero() { x - width / slope } else { -T::one() };
+            }
+            if next >= x * (T::one() - T::default_epsilon() * lit(16.0)) {
+                return (NodeBound::AtMost(x), size);
+            }
+            if next < low {
+                if low <= T::zero() {
+                    return (NodeBound::Nothing(culprit), size);
+                }
+                x = low;
                 continue;
             }
-            let (u, slope) = ((rest - c * x) / row.m, -c / row.m);
-            if row.m > T::zero() {
-                if u < high.0 {
-                    high = (u, slope, index);
-                }
-            } else if u > least.0 {
-                least = (u, slope, index);
+            if curved {
+                share = share.min((T::one() - next / x) * lit(4.0));
             }
+            x = next;
         }
-        size = if high.0 < huge() { high.0.abs() } else { T::zero() };
-        size = size.max(if least.0 > -huge::<T>() { least.0.abs() } else { T::zero() });
-        let width = high.0 - least.0;
-        let (mut next, mut culprit) = (x, high.2);
-        if let Some((at, index)) = flat {
-            (next, culprit) = (at, index);
-        } else if width < T::zero() {
-            let slope = high.1 - least.1;
-            // The row that gravity or friction breaks by itself is the one with the smaller share of m.
-            if least.1.abs() > high.1.abs() {
-                culprit = least.2;
-            }
-            next = if slope < T::zero() { x - width / slope } else { -T::one() };
-        }
-        if next >= x * (T::one() - T::default_epsilon() * lit(16.0)) {
-            return (NodeBound::AtMost(x), size);
-        }
-        if next < low {
-            if low <= T::zero() {
-                return (NodeBound::Nothing(culprit), size);
-            }
-            x = low;
-            continue;
-        }
-        if curved {
-            share = share.min((T::one() - next / x) * lit(4.0));
-        }
-        x = next;
+        (NodeBound::AtMost(x), size)
     }
-    (NodeBound::AtMost(x), size)
 }
 
 /// A barrier of a row from `x0` at its left end with the least x at its right end, near the estimate `x2`.
@@ -234,35 +262,37 @@ pub(super) fn least<T: RealField + Copy, const N: usize>(
     back: bool,
 ) -> Option<Barrier<T>> {
     let h = segment.length;
-    let seen = |index: usize| {
-        let row = segment.row(index, limits, friction, true)?;
-        let row = if back { row.reversed() } else { row };
-        row.m.iter().all(|m| *m > row.m_error).then_some(row)
-    };
+    let is_barrier = |row: &Row<T>| row.m.iter().all(|m| if back { *m < -row.m_error } else { *m > row.m_error });
     // Rows in the order of what Euler and the trapezoidal rule say.
-    let estimate = |row: &Row<T>| {
-        let u = |end: usize, x: T| (row.bound - row.d[end] - row.c[end] * x - row.curved(end, x)) / row.m[end];
-        let first = u(0, x0);
-        x0 + h * (first + u(2, x0 + first * h * lit(2.0)))
-    };
+    let mut estimates = [[huge::<T>(); 4]; N];
+    segment.each_row(limits, friction, true, |index, row| {
+        if index >= Segment::<T, N>::SLOPED || !is_barrier(&row) {
+            return;
+        }
+        let (from, to, sign) = if back { (2, 0, -T::one()) } else { (0, 2, T::one()) };
+        let u = |end: usize, x: T| (row.bound - row.d[end] - row.c[end] * x - row.curved(end, x)) / (row.m[end] * sign);
+        let first = u(from, x0);
+        if let Some(estimate) = estimates.as_flattened_mut().get_mut(index) {
+            *estimate = x0 + h * (first + u(to, x0 + first * h * lit(2.0)));
+        }
+    });
     let mut best: Option<Barrier<T>> = None;
-    let mut after = (-huge::<T>(), 0);
     for _ in 0..Segment::<T, N>::SLOPED {
-        let mut next: Option<(T, usize, Row<T>)> = None;
-        for index in 0..Segment::<T, N>::SLOPED {
-            let Some(row) = seen(index) else { continue };
-            let value = estimate(&row);
-            let later = value > after.0 || (value == after.0 && index > after.1);
-            if later && next.as_ref().is_none_or(|(least, ..)| value < *least) {
-                next = Some((value, index, row));
+        let mut next = (huge::<T>(), 0);
+        for (index, value) in estimates.as_flattened().iter().enumerate() {
+            if *value < next.0 {
+                next = (*value, index);
             }
         }
-        let Some((value, index, row)) = next else { break };
-        if best.is_some_and(|b| value > b.law.x2) {
+        let (value, index) = next;
+        if value >= huge() || best.is_some_and(|b| value > b.law.x2) {
             break;
         }
-        after = (value, index);
-        if let Some(law) = barrier(&row, h, x0, value) {
+        if let Some(estimate) = estimates.as_flattened_mut().get_mut(index) {
+            *estimate = huge();
+        }
+        let row = segment.row(index, limits, friction, true).map(|row| if back { row.reversed() } else { row });
+        if let Some(law) = row.and_then(|row| barrier(&row, h, x0, value)) {
             if best.is_none_or(|b| law.x2 < b.law.x2) {
                 best = Some(Barrier { law, row: index });
             }

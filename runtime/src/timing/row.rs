@@ -10,6 +10,26 @@ use nalgebra::RealField;
 /// A quadratic on a segment: three Bernstein coefficients.
 pub(super) type Quadratic<T> = [T; 3];
 
+/// Without a case for numbers that are none, so that it is an instruction.
+#[inline]
+pub(super) fn least<T: PartialOrd>(a: T, b: T) -> T {
+    if a < b {
+        a
+    } else {
+        b
+    }
+}
+
+/// The same.
+#[inline]
+pub(super) fn most<T: PartialOrd>(a: T, b: T) -> T {
+    if a > b {
+        a
+    } else {
+        b
+    }
+}
+
 /// A coefficient of a row's Bernstein form: x0 X0 + x2 X2 + k k + rest.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(super) struct Form<T> {

@@ -17,7 +17,7 @@ use super::majorant::{Bounds, NINE};
 use super::model::{JointFriction, PathTorques};
 use super::path::Piece;
 use super::polynomial;
-use super::row::{Quadratic, Row};
+use super::row::{most, Quadratic, Row};
 use crate::linalg::lit;
 use nalgebra::{RealField, SVector};
 
@@ -44,6 +44,15 @@ pub(super) struct Column<T> {
     pub quadratic: Quadratic<T>,
     /// |f - quadratic| is at most this.
     pub error: T,
+}
+
+impl<T: RealField + Copy> Column<T> {
+    /// |f| is at most this: Bernstein coefficients bound the quadratic.
+    #[inline]
+    pub(super) fn size(&self) -> T {
+        let [a, b, c] = self.quadratic.map(|x| x.abs());
+        most(most(a, b), c) + self.error
+    }
 }
 
 /// An upper bound of x on a segment, of all motions: a law and the row that proves it.
@@ -236,9 +245,19 @@ impl<T: RealField + Copy, const N: usize> Segment<T, N> {
         }
     }
 
+    /// The largest torque of a joint for |u| <= `u` and x up to the square of `root`.
+    #[inline]
+    pub(super) fn largest_torque(&self, joint: usize, of: &JointFriction<T>, u: T, root: T) -> Option<T> {
+        let [m, c, g] = [self.torques[0].get(joint)?, self.torques[1].get(joint)?, self.torques[2].get(joint)?];
+        let speed = self.rates[0].get(joint)?.size() * root;
+        let free = m.size() * u + c.size() * root * root + g.size() * (T::one() + of.load);
+        let friction = of.coulomb + of.offset.abs() + of.stribeck.abs() + (of.viscous + of.cubic.abs() * speed * speed) * speed;
+        Some(free + friction)
+    }
+
     /// |dq| at most `limit`, squared.
     #[inline]
-    fn speed(&self, joint: usize, limit: T) -> Option<Row<T>> {
+    pub(super) fn speed(&self, joint: usize, limit: T) -> Option<Row<T>> {
         let zero = [T::zero(); 3];
         let square = self.rates[2].get(joint)?;
         limit.is_finite().then(|| Row {
@@ -257,7 +276,7 @@ impl<T: RealField + Copy, const N: usize> Segment<T, N> {
 
     /// ddq at most `limit`, or at least -`limit`.
     #[inline]
-    fn acceleration(&self, joint: usize, side: usize, limit: T) -> Option<Row<T>> {
+    pub(super) fn acceleration(&self, joint: usize, side: usize, limit: T) -> Option<Row<T>> {
         let zero = [T::zero(); 3];
         let side = if side == 0 { T::one() } else { -T::one() };
         let signed = |q: Quadratic<T>| q.map(|x| x * side);
@@ -278,7 +297,14 @@ impl<T: RealField + Copy, const N: usize> Segment<T, N> {
 
     /// The torque at most its upper limit, or at least its lower one.
     #[inline]
-    fn torque(&self, joint: usize, side: usize, effort: &[T; 2], of: &JointFriction<T>, relaxed: bool) -> Option<Row<T>> {
+    pub(super) fn torque(
+        &self,
+        joint: usize,
+        side: usize,
+        effort: &[T; 2],
+        of: &JointFriction<T>,
+        relaxed: bool,
+    ) -> Option<Row<T>> {
         let [low, high] = *effort;
         let (side, bound) = if side == 0 { (T::one(), high) } else { (-T::one(), -low) };
         if !bound.is_finite() {
@@ -482,17 +508,27 @@ impl<T: RealField + Copy, const N: usize> Source<'_, T, N> {
         let sizes = [&self.bounds[0].inertial, &self.bounds[0].velocity, &self.bounds[0].gravity];
         let ninth = [&self.bounds[1].inertial, &self.bounds[1].velocity, &self.bounds[1].gravity];
         for part in 0..3 {
-            for joint in 0..N {
-                let mut values = [T::zero(); NINE];
-                for (value, node) in values.iter_mut().zip(window) {
-                    *value = node.torques[part][joint];
+            // All joints at once: the compiler takes several side by side.
+            let dot = |weights: &[T; NINE]| {
+                let mut sum = [T::zero(); N];
+                for (weight, node) in weights.iter().zip(window) {
+                    for (sum, value) in sum.iter_mut().zip(node.torques[part].iter()) {
+                        *sum += *weight * *value;
+                    }
                 }
-                let dot = |weights: &[T; NINE]| weights.iter().zip(&values).fold(T::zero(), |sum, (w, v)| sum + *w * *v);
-                let [left, middle, right] = [dot(&weights[0]), dot(&weights[1]), dot(&weights[2])];
-                let steepest = third.iter().fold(T::zero(), |most, row| most.max(dot(row).abs()));
+                sum
+            };
+            let [left, middle, right] = [dot(&weights[0]), dot(&weights[1]), dot(&weights[2])];
+            let mut steepest = [T::zero(); N];
+            for row in third {
+                for (steepest, value) in steepest.iter_mut().zip(dot(row)) {
+                    *steepest = most(*steepest, value.abs());
+                }
+            }
+            for joint in 0..N {
                 segment.torques[part][joint] = Column {
-                    quadratic: through(left, middle, right),
-                    error: steepest * cube + ninth[part][joint] * remainder + sizes[part][joint] * rounding,
+                    quadratic: through(left[joint], middle[joint], right[joint]),
+                    error: steepest[joint] * cube + ninth[part][joint] * remainder + sizes[part][joint] * rounding,
                 };
             }
         }

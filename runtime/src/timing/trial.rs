@@ -6,7 +6,7 @@
 use super::inner::{of_row, HalfPlane, Interval};
 use super::limits::Limits;
 use super::model::JointFriction;
-use super::row::{Form, Quadratic, Window};
+use super::row::{least, most, Form, Quadratic, Window};
 use super::segment::{Assumed, Segment};
 use crate::linalg::lit;
 use nalgebra::RealField;
@@ -16,23 +16,6 @@ use nalgebra::RealField;
 struct Spread<T> {
     middle: T,
     reach: T,
-}
-
-/// Without a case for numbers that are none, so that it is an instruction.
-fn least<T: PartialOrd>(a: T, b: T) -> T {
-    if a < b {
-        a
-    } else {
-        b
-    }
-}
-
-fn most<T: PartialOrd>(a: T, b: T) -> T {
-    if a > b {
-        a
-    } else {
-        b
-    }
 }
 
 impl<T: RealField + Copy> Spread<T> {
