@@ -62,26 +62,30 @@ pub(super) fn node_bound<T: RealField + Copy, const N: usize>(
         }
     }
     // u may jump at a node, as q'' and the signs of friction do: each side has an interval of its own.
-    for (segment, end) in sides {
-        let Some(segment) = segment else { continue };
-        let mut side = Side::new(segment, end, limits, friction);
-        // A first solution tells how large u is, and so how much the errors of m count.
-        let (first, u) = side.largest(x);
-        let from = match first {
-            // With these errors no row bounds more than without.
-            NodeBound::AtMost(first) if first == x => continue,
-            NodeBound::AtMost(first) => x.min(first.max(T::zero()) * lit(1.0 + 1e-6)),
-            NodeBound::Nothing(_) => x,
-        };
-        for row in side.rows.as_flattened_mut() {
-            row.rest += row.m_error * u * lit(2.0);
-        }
-        match side.largest(from).0 {
-            NodeBound::AtMost(most) => x = most,
-            nothing @ NodeBound::Nothing(_) => return nothing,
-        }
+    let mut bound = NodeBound::AtMost(x);
+    if let Some(segment) = left {
+        bound = bound_of_side(Side::new::<2>(segment, limits, friction), x);
     }
-    NodeBound::AtMost(x)
+    match (bound, right) {
+        (NodeBound::AtMost(x), Some(segment)) => bound_of_side(Side::new::<0>(segment, limits, friction), x),
+        _ => bound,
+    }
+}
+
+/// The largest x at most `x` for which some u keeps all rows of a side.
+fn bound_of_side<T: RealField + Copy, const N: usize>(mut side: Side<T, N>, x: T) -> NodeBound<T> {
+    // A first solution tells how large u is, and so how much the errors of m count.
+    let (first, u) = side.largest(x);
+    let from = match first {
+        // With these errors no row bounds more than without.
+        NodeBound::AtMost(first) if first == x => return NodeBound::AtMost(x),
+        NodeBound::AtMost(first) => x.min(first.max(T::zero()) * lit(1.0 + 1e-6)),
+        NodeBound::Nothing(_) => x,
+    };
+    for row in side.rows.as_flattened_mut() {
+        row.rest += row.m_error * u * lit(2.0);
+    }
+    side.largest(from).0
 }
 
 /// The rows with a slope at an end of a segment.
@@ -94,7 +98,7 @@ struct Side<T, const N: usize> {
 }
 
 impl<T: RealField + Copy, const N: usize> Side<T, N> {
-    fn new(segment: &Segment<T, N>, end: usize, limits: &Limits<T, N>, friction: &[JointFriction<T>; N]) -> Self {
+    fn new<const END: usize>(segment: &Segment<T, N>, limits: &Limits<T, N>, friction: &[JointFriction<T>; N]) -> Self {
         let zero = T::zero();
         let empty = AtNode { index: 0, m: zero, c: zero, v: zero, rest: zero, m_error: zero };
         let mut side = Self { rows: [[empty; 4]; N], count: 0, curves: [[None; 4]; N], curved: false };
@@ -104,16 +108,16 @@ impl<T: RealField + Copy, const N: usize> Side<T, N> {
             }
             let at = AtNode {
                 index,
-                m: row.m[end],
-                c: row.c[end] - row.c_error,
-                v: row.v[end],
-                rest: row.bound + row.bound.abs() * lit(ROUNDING) + row.d_error - row.d[end],
+                m: row.m[END],
+                c: row.c[END] - row.c_error,
+                v: row.v[END],
+                rest: row.bound + row.bound.abs() * lit(ROUNDING) + row.d_error - row.d[END],
                 m_error: row.m_error,
             };
             if row.is_curved() {
                 side.curved = true;
                 if let Some(curve) = side.curves.as_flattened_mut().get_mut(side.count) {
-                    *curve = row.curve.map(|curve| curve.at(end));
+                    *curve = row.curve.map(|curve| curve.at(END));
                 }
             }
             if let Some(to) = side.rows.as_flattened_mut().get_mut(side.count) {
@@ -253,23 +257,22 @@ fn barrier<T: RealField + Copy>(row: &Row<T>, h: T, x0: T, estimate: T) -> Optio
     None
 }
 
-/// The least barrier from `x0` at the left end, or seen from the other end if `back`.
-pub(super) fn least<T: RealField + Copy, const N: usize>(
+/// The least barrier from `x0` at the left end, or seen from the other end if `BACK`.
+pub(super) fn least<T: RealField + Copy, const N: usize, const BACK: bool>(
     segment: &Segment<T, N>,
     limits: &Limits<T, N>,
     friction: &[JointFriction<T>; N],
     x0: T,
-    back: bool,
 ) -> Option<Barrier<T>> {
     let h = segment.length;
-    let is_barrier = |row: &Row<T>| row.m.iter().all(|m| if back { *m < -row.m_error } else { *m > row.m_error });
+    let is_barrier = |row: &Row<T>| row.m.iter().all(|m| if BACK { *m < -row.m_error } else { *m > row.m_error });
     // Rows in the order of what Euler and the trapezoidal rule say.
     let mut estimates = [[huge::<T>(); 4]; N];
     segment.each_row(limits, friction, true, |index, row| {
         if index >= Segment::<T, N>::SLOPED || !is_barrier(&row) {
             return;
         }
-        let (from, to, sign) = if back { (2, 0, -T::one()) } else { (0, 2, T::one()) };
+        let (from, to, sign) = if BACK { (2, 0, -T::one()) } else { (0, 2, T::one()) };
         let u = |end: usize, x: T| (row.bound - row.d[end] - row.c[end] * x - row.curved(end, x)) / (row.m[end] * sign);
         let first = u(from, x0);
         if let Some(estimate) = estimates.as_flattened_mut().get_mut(index) {
@@ -291,7 +294,7 @@ pub(super) fn least<T: RealField + Copy, const N: usize>(
         if let Some(estimate) = estimates.as_flattened_mut().get_mut(index) {
             *estimate = huge();
         }
-        let row = segment.row(index, limits, friction, true).map(|row| if back { row.reversed() } else { row });
+        let row = segment.row(index, limits, friction, true).map(|row| if BACK { row.reversed() } else { row });
         if let Some(law) = row.and_then(|row| barrier(&row, h, x0, value)) {
             if best.is_none_or(|b| law.x2 < b.law.x2) {
                 best = Some(Barrier { law, row: index });

@@ -212,7 +212,7 @@ impl<T: RealField + Copy, const N: usize> Solver<'_, T, N> {
             if segment.is_new || x != segment.bound.forward {
                 segment.changed = true;
                 segment.bound.forward = x;
-                segment.bound.barriers[0] = outer::least(segment, self.limits, self.friction, x, false);
+                segment.bound.barriers[0] = outer::least::<_, N, false>(segment, self.limits, self.friction, x);
             }
             let barrier = segment.bound.barriers[0];
             let reached = barrier.map_or(next, |b| b.law.x2);
@@ -248,7 +248,7 @@ impl<T: RealField + Copy, const N: usize> Solver<'_, T, N> {
         for segment in segments.iter_mut().take(count).rev() {
             if segment.is_new || x != before {
                 segment.changed = true;
-                let barrier = outer::least(segment, self.limits, self.friction, x, true);
+                let barrier = outer::least::<_, N, true>(segment, self.limits, self.friction, x);
                 segment.bound.barriers[1] = barrier.map(|b| Barrier { law: reversed(&b.law), ..b });
             }
             let barrier = segment.bound.barriers[1].map(|b| Barrier { law: reversed(&b.law), ..b });
@@ -297,9 +297,8 @@ impl<T: RealField + Copy, const N: usize> Solver<'_, T, N> {
             self.pass(segments, Assume::Bound, known)?;
         } else if !(known && self.pass(segments, Assume::Share(lit(0.97)), true).is_ok()) {
             self.pass(segments, Assume::Bound, false)?;
-            // From one law the next: a pass that fails leaves the law of the last one.
+            // A pass that fails leaves the law of the one before it.
             let _ = self.pass(segments, Assume::Share(lit(0.9)), false);
-            let _ = self.pass(segments, Assume::Share(lit(0.99)), false);
         }
         for segment in segments {
             segment.changed = false;
