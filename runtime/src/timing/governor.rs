@@ -1,6 +1,5 @@
 //! Stops, overrides and resumes on a timed path, within all limits.
 
-use super::inner::HalfPlanes;
 use super::law::Law;
 use super::model::JointFriction;
 use super::segment::{Assumed, Inner, Segment};
@@ -289,7 +288,7 @@ impl<'a, T: RealField + Copy, const N: usize> Governor<'a, T, N> {
             None => current,
         };
         let (limits, friction, next) = (&self.timing.limits, &self.timing.friction, self.next(self.segment));
-        let mut trial = Trial::new(part, limits, friction, x, self.first);
+        let mut trial = Trial::new(part, limits, friction, part.inner.assumed, x, self.first);
         let off = |x2: T| (x2 - target).abs();
         let mut best: Option<(T, usize, Law<T>, Rows<T>)> = None;
         // Those of the last choice first: the trials of others that come no nearer end early.
@@ -366,10 +365,10 @@ impl<T: RealField + Copy> Candidates<T> {
 /// From which x at the start of a segment some rows lead to an x in `next`: the interval around the timed motion.
 fn backwards<T: RealField + Copy, const N: usize>(timing: &Timing<'_, T, N>, segment: &Segment<T, N>, next: [T; 2]) -> [T; 2] {
     let candidates = Candidates::new(timing, segment);
+    let mut trial = Trial::new(segment, &timing.limits, &timing.friction, segment.inner.assumed, T::zero(), [None; 2]);
     let found: [_; ROWS] = core::array::from_fn(|i| {
         let Rows { k, assumed } = candidates.rows(i, None)?;
-        let planes = HalfPlanes::new(segment, &timing.limits, &timing.friction, k, &assumed, next);
-        planes.backwards(assumed.x[0], assumed.x[1])
+        trial.backwards(k, &assumed, next, assumed.x[0], assumed.x[1])
     });
     let mut all = segment.inner.interval;
     for _ in 0..ROWS {

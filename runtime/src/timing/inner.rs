@@ -8,7 +8,7 @@
 use super::limits::Limits;
 use super::model::JointFriction;
 use super::outer::ROUNDING;
-use super::row::{least, most, Form, Quadratic, Row, Window};
+use super::row::{Form, Row, Window};
 use super::segment::{Assumed, Segment};
 use crate::linalg::lit;
 use nalgebra::RealField;
@@ -37,29 +37,24 @@ pub(super) fn of_row<T: RealField + Copy, const N: usize>(
     assumed: &Assumed<T>,
     window: &Window<T>,
 ) -> Option<[Form<T>; 5]> {
+    let most = assumed.x[1];
     let row = segment.row(index, limits, friction, false)?;
-    let row = binding(&row, assumed, assumed.x[1].sqrt(), window)?;
-    Some(row.forms(segment.length).map(|form| Form { rest: form.rest - row.bound, ..form }))
-}
-
-/// The row as lines over x, with all errors in its limit; `None` where nothing that is assumed breaks it. `root` is that of the largest x.
-#[inline]
-fn binding<T: RealField + Copy>(row: &Row<T>, assumed: &Assumed<T>, root: T, window: &Window<T>) -> Option<Row<T>> {
-    let ([_, most_x], u) = (assumed.x, assumed.u);
+    let slack = row.bound.abs() * lit(ROUNDING) + row.m_error * assumed.u + row.v_error * most.sqrt() + row.d_error;
+    // Speed that the bound does not reach.
+    if index >= Segment::<T, N>::SLOPED && row.c.iter().all(|c| (*c + row.c_error) * most <= row.bound * lit(1.0 - 1e-6)) {
+        return None;
+    }
     // x >= 0, so the error of c is a part of c.
-    let mut row = Row { c: row.c.map(|c| c + row.c_error), ..*row };
-    let slack = row.bound.abs() * lit(ROUNDING) + row.m_error * u + row.v_error * root + row.d_error;
+    let mut row = Row { c: row.c.map(|c| c + row.c_error), ..row };
     if row.is_curved() {
         row = row.straight(window, true);
     }
-    let largest = |[a, b, c]: Quadratic<T>| most(most(a, b), c);
-    let reaches = largest(row.m.map(|m| m.abs())) * u + most(largest(row.c), T::zero()) * most_x + largest(row.d);
-    row.bound -= slack;
-    (!(reaches <= row.bound * lit(1.0 - 1e-6))).then_some(row)
+    let bound = row.bound - slack;
+    Some(row.forms(segment.length).map(|form| Form { rest: form.rest - bound, ..form }))
 }
 
 /// The half-planes of the middle coefficient, of u and of the interval at the end, for k: those from above and from below.
-fn others<T: RealField + Copy>(h: T, k: T, assumed: &Assumed<T>, next: [T; 2]) -> [[HalfPlane<T>; 4]; 2] {
+pub(super) fn others<T: RealField + Copy>(h: T, k: T, assumed: &Assumed<T>, next: [T; 2]) -> [[HalfPlane<T>; 4]; 2] {
     let (zero, one, half) = (T::zero(), T::one(), lit::<T>(0.5));
     let ([least, most], u) = (assumed.x, assumed.u);
     let (g, bend) = (half / h, k / h);
@@ -70,148 +65,58 @@ fn others<T: RealField + Copy>(h: T, k: T, assumed: &Assumed<T>, next: [T; 2]) -
     ]
 }
 
-/// The half-planes of a segment for one k.
-pub(super) struct HalfPlanes<T, const N: usize> {
-    /// Of rows: those that bound X2 from above, first to last, and those that bound it from below, last to first.
-    rows: [[HalfPlane<T>; 25]; N],
-    /// Where the first end and the others begin.
-    ends: [usize; 2],
-    others: [[HalfPlane<T>; 4]; 2],
-    /// The X0 that planes without X2 allow.
-    alone: [T; 2],
-}
-
-impl<T: RealField + Copy, const N: usize> HalfPlanes<T, N> {
-    pub(super) fn new(
-        segment: &Segment<T, N>,
-        limits: &Limits<T, N>,
-        friction: &[JointFriction<T>; N],
-        k: T,
-        assumed: &Assumed<T>,
-        next: [T; 2],
-    ) -> Self {
-        let window = Window::new(assumed.x, assumed.touch);
-        let (zero, root, h) = (T::zero(), assumed.x[1].sqrt(), segment.length);
-        let mut rows = [[HalfPlane { x0: zero, x2: zero, most: zero }; 25]; N];
-        let places = rows.as_flattened_mut();
-        let mut ends = [0, places.len()];
-        let mut rest = Interval::new();
-        let mut add = |row: Option<Row<T>>| {
-            let Some(row) = row.and_then(|row| binding(&row, assumed, root, &window)) else { return };
-            for form in row.forms(h) {
-                let plane = HalfPlane::of(&Form { rest: form.rest - row.bound, ..form }, k);
-                let place = if plane.x2 > zero {
-                    ends[0] += 1;
-                    ends[0] - 1
-                } else if plane.x2 < zero {
-                    ends[1] -= 1;
-                    ends[1]
-                } else {
-                    rest.cut(&plane, zero);
-                    continue;
-                };
-                if let Some(to) = places.get_mut(place) {
-                    *to = plane;
-                }
-            }
-        };
-        // Most rows cannot bind, and most of these show it before they are made.
-        let share = lit::<T>(1.0 - 1e-6);
-        for (joint, (effort, of)) in limits.effort.iter().zip(friction).enumerate() {
-            let torque = segment.largest_torque(joint, of, assumed.u, root);
-            if torque.is_none_or(|torque| !(torque <= least(-effort[0], effort[1]) * share)) {
-                add(segment.torque(joint, 0, effort, of, false));
-                add(segment.torque(joint, 1, effort, of, false));
-            }
-        }
-        for (joint, limit) in limits.acceleration.iter().enumerate().filter(|(_, limit)| limit.is_finite()) {
-            add(segment.acceleration(joint, 0, *limit));
-            add(segment.acceleration(joint, 1, *limit));
-        }
-        for (joint, (limit, square)) in limits.velocity.iter().zip(&segment.rates[2]).enumerate() {
-            if !(square.size() * assumed.x[1] <= *limit * *limit * share) {
-                add(segment.speed(joint, *limit));
-            }
-        }
-        Self { rows, ends, others: others(h, k, assumed, next), alone: rest.alone }
-    }
-
-    /// The interval of X2 for an X0.
-    pub(super) fn interval(&self, x0: T) -> Interval<T> {
-        let mut found = Interval { alone: self.alone, ..Interval::new() };
-        let rows = self.rows.as_flattened();
-        let [above, below] = &self.others;
-        for planes in [rows.get(..self.ends[0]).unwrap_or(&[]), above] {
-            for plane in planes {
-                found.lower(plane, x0);
-            }
-        }
-        for plane in rows.get(self.ends[1]..).unwrap_or(&[]).iter().rev() {
-            found.raise(plane, x0);
-        }
-        for plane in below {
-            found.raise(plane, x0);
-        }
-        found
-    }
-
-    /// The X0 in [least, most] from which some X2 keeps all planes; `None` where there is no such X0.
-    pub(super) fn backwards(&self, least: T, most: T) -> Option<[T; 2]> {
-        let (mut low, mut high) = (least, most);
-        let tiny = lit::<T>(64.0) * T::default_epsilon();
-        let mut found = false;
-        for _ in 0..60 {
-            let at = self.interval(high);
-            if at.alone[1] < high {
-                high = at.alone[1];
-                if high < low {
-                    return None;
-                }
-                continue;
-            }
-            low = low.max(at.alone[0]);
-            let width = at.width();
-            if width >= -tiny * at.size() {
-                found = true;
-                break;
-            }
-            let slope = at.high.1 - at.low.1;
-            if !(slope < T::zero()) {
-                return None;
-            }
-            high -= width / slope;
+/// The X0 in [least, most] for which the interval of X2 is not empty; `None` where there is no such X0.
+pub(super) fn backwards<T: RealField + Copy>(least: T, most: T, mut interval: impl FnMut(T) -> Interval<T>) -> Option<[T; 2]> {
+    let (mut low, mut high) = (least, most);
+    let tiny = lit::<T>(64.0) * T::default_epsilon();
+    let mut found = false;
+    for _ in 0..60 {
+        let at = interval(high);
+        if at.alone[1] < high {
+            high = at.alone[1];
             if high < low {
                 return None;
             }
+            continue;
         }
-        if !found {
+        low = low.max(at.alone[0]);
+        let width = at.width();
+        // It is a difference of X0 and X2, and rounds as these do.
+        if width >= -tiny * at.size().max(high) {
+            found = true;
+            break;
+        }
+        let slope = at.high.1 - at.low.1;
+        if !(slope < T::zero()) {
             return None;
         }
-        // Within the interval, not on its edge, so that rounding does not leave it empty.
-        high *= T::one() - tiny;
-        let top = high;
-        for _ in 0..60 {
-            if low >= top {
-                return Some([top, top]);
-            }
-            let at = self.interval(low);
-            let width = at.width();
-            if width >= T::zero() {
-                return Some([low, top]);
-            }
-            let slope = at.high.1 - at.low.1;
-            if !(slope > T::zero()) {
-                return Some([top, top]);
-            }
-            low = (low - width / slope) * (T::one() + tiny);
+        high -= width / slope;
+        if high < low {
+            return None;
         }
-        Some([top, top])
     }
-
-    /// The largest X2 from an X0.
-    pub(super) fn forwards(&self, x0: T) -> T {
-        self.interval(x0).high.0
+    if !found {
+        return None;
     }
+    // Within the interval, not on its edge, so that rounding does not leave it empty.
+    high *= T::one() - tiny;
+    let top = high;
+    for _ in 0..60 {
+        if low >= top {
+            return Some([top, top]);
+        }
+        let at = interval(low);
+        let width = at.width();
+        if width >= T::zero() {
+            return Some([low, top]);
+        }
+        let slope = at.high.1 - at.low.1;
+        if !(slope > T::zero()) {
+            return Some([top, top]);
+        }
+        low = (low - width / slope) * (T::one() + tiny);
+    }
+    Some([top, top])
 }
 
 /// The interval of X2 for an X0: (lowest, its slope by X0), (highest, its slope), and the X0 that the planes without X2 allow.
@@ -239,7 +144,7 @@ impl<T: RealField + Copy> Interval<T> {
 
     /// Takes what a plane with x2 > 0 leaves; whether it moves the upper end. It divides only where it does.
     #[inline]
-    fn lower(&mut self, plane: &HalfPlane<T>, x0: T) -> bool {
+    pub(super) fn lower(&mut self, plane: &HalfPlane<T>, x0: T) -> bool {
         let room = plane.most - plane.x0 * x0;
         let moves = room < self.high.0 * plane.x2;
         if moves {
@@ -250,7 +155,7 @@ impl<T: RealField + Copy> Interval<T> {
 
     /// The same with x2 < 0 and the lower end.
     #[inline]
-    fn raise(&mut self, plane: &HalfPlane<T>, x0: T) -> bool {
+    pub(super) fn raise(&mut self, plane: &HalfPlane<T>, x0: T) -> bool {
         let room = plane.most - plane.x0 * x0;
         let moves = room < self.low.0 * plane.x2;
         if moves {

@@ -102,10 +102,7 @@ impl<T: RealField + Copy, const N: usize> Side<T, N> {
         let zero = T::zero();
         let empty = AtNode { index: 0, m: zero, c: zero, v: zero, rest: zero, m_error: zero };
         let mut side = Self { rows: [[empty; 4]; N], count: 0, curves: [[None; 4]; N], curved: false };
-        segment.each_row(limits, friction, true, |index, row| {
-            if index >= Segment::<T, N>::SLOPED {
-                return;
-            }
+        segment.each_sloped(limits, friction, true, |index, row| {
             let at = AtNode {
                 index,
                 m: row.m[END],
@@ -268,8 +265,8 @@ pub(super) fn least<T: RealField + Copy, const N: usize, const BACK: bool>(
     let is_barrier = |row: &Row<T>| row.m.iter().all(|m| if BACK { *m < -row.m_error } else { *m > row.m_error });
     // Rows in the order of what Euler and the trapezoidal rule say.
     let mut estimates = [[huge::<T>(); 4]; N];
-    segment.each_row(limits, friction, true, |index, row| {
-        if index >= Segment::<T, N>::SLOPED || !is_barrier(&row) {
+    segment.each_sloped(limits, friction, true, |index, row| {
+        if !is_barrier(&row) {
             return;
         }
         let (from, to, sign) = if BACK { (2, 0, -T::one()) } else { (0, 2, T::one()) };

@@ -46,15 +46,6 @@ pub(super) struct Column<T> {
     pub error: T,
 }
 
-impl<T: RealField + Copy> Column<T> {
-    /// |f| is at most this: Bernstein coefficients bound the quadratic.
-    #[inline]
-    pub(super) fn size(&self) -> T {
-        let [a, b, c] = self.quadratic.map(|x| x.abs());
-        most(most(a, b), c) + self.error
-    }
-}
-
 /// An upper bound of x on a segment, of all motions: a law and the row that proves it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Barrier<T> {
@@ -215,9 +206,9 @@ impl<T: RealField + Copy, const N: usize> Segment<T, N> {
         }
     }
 
-    /// Calls `with` with each row and its index, in order.
+    /// Calls `with` with each row into which a slope of x enters, and its index, in order.
     #[inline]
-    pub(super) fn each_row(
+    pub(super) fn each_sloped(
         &self,
         limits: &Limits<T, N>,
         friction: &[JointFriction<T>; N],
@@ -238,26 +229,11 @@ impl<T: RealField + Copy, const N: usize> Segment<T, N> {
                 }
             }
         }
-        for (joint, limit) in limits.velocity.iter().enumerate() {
-            if let Some(row) = self.speed(joint, *limit) {
-                with(4 * N + joint, row);
-            }
-        }
-    }
-
-    /// The largest torque of a joint for |u| <= `u` and x up to the square of `root`.
-    #[inline]
-    pub(super) fn largest_torque(&self, joint: usize, of: &JointFriction<T>, u: T, root: T) -> Option<T> {
-        let [m, c, g] = [self.torques[0].get(joint)?, self.torques[1].get(joint)?, self.torques[2].get(joint)?];
-        let speed = self.rates[0].get(joint)?.size() * root;
-        let free = m.size() * u + c.size() * root * root + g.size() * (T::one() + of.load);
-        let friction = of.coulomb + of.offset.abs() + of.stribeck.abs() + (of.viscous + of.cubic.abs() * speed * speed) * speed;
-        Some(free + friction)
     }
 
     /// |dq| at most `limit`, squared.
     #[inline]
-    pub(super) fn speed(&self, joint: usize, limit: T) -> Option<Row<T>> {
+    fn speed(&self, joint: usize, limit: T) -> Option<Row<T>> {
         let zero = [T::zero(); 3];
         let square = self.rates[2].get(joint)?;
         limit.is_finite().then(|| Row {
@@ -276,7 +252,7 @@ impl<T: RealField + Copy, const N: usize> Segment<T, N> {
 
     /// ddq at most `limit`, or at least -`limit`.
     #[inline]
-    pub(super) fn acceleration(&self, joint: usize, side: usize, limit: T) -> Option<Row<T>> {
+    fn acceleration(&self, joint: usize, side: usize, limit: T) -> Option<Row<T>> {
         let zero = [T::zero(); 3];
         let side = if side == 0 { T::one() } else { -T::one() };
         let signed = |q: Quadratic<T>| q.map(|x| x * side);
@@ -297,14 +273,7 @@ impl<T: RealField + Copy, const N: usize> Segment<T, N> {
 
     /// The torque at most its upper limit, or at least its lower one.
     #[inline]
-    pub(super) fn torque(
-        &self,
-        joint: usize,
-        side: usize,
-        effort: &[T; 2],
-        of: &JointFriction<T>,
-        relaxed: bool,
-    ) -> Option<Row<T>> {
+    fn torque(&self, joint: usize, side: usize, effort: &[T; 2], of: &JointFriction<T>, relaxed: bool) -> Option<Row<T>> {
         let [low, high] = *effort;
         let (side, bound) = if side == 0 { (T::one(), high) } else { (-T::one(), -low) };
         if !bound.is_finite() {

@@ -2,7 +2,6 @@
 
 use super::fault::{TimingError, TimingFault};
 use super::grid;
-use super::inner::HalfPlanes;
 use super::law::Law;
 use super::limits::Limits;
 use super::model::{JointFriction, PathDynamics};
@@ -11,6 +10,7 @@ use super::path::{number, JointPath, Piece};
 use super::polynomial;
 use super::segment::{limit, Assumed, Barrier, Interpolation, Node, Segment};
 use super::timed::Timing;
+use super::trial::Trial;
 use crate::linalg::lit;
 use nalgebra::RealField;
 
@@ -338,6 +338,8 @@ impl<T: RealField + Copy, const N: usize> Solver<'_, T, N> {
         let mut next = [end, end];
         let mut before = next;
         let mut failed = None;
+        // The rows that bind are likely those of the neighbour.
+        let mut first = [None; 2];
         for i in (0..count).rev() {
             let near = segments.get(i.saturating_sub(1)..(i + 3).min(count + 1)).unwrap_or(&[]);
             let keeps = local && next == before && !near.iter().any(|of| of.changed);
@@ -363,9 +365,9 @@ impl<T: RealField + Copy, const N: usize> Solver<'_, T, N> {
             }
             ks[3] = Some((here + after - before - beyond) / lit(8.0));
             let mut best: Option<([T; 2], T)> = None;
+            let mut trial = Trial::new(segment, self.limits, self.friction, assumed, here, first);
             for k in ks.into_iter().flatten() {
-                let planes = HalfPlanes::new(segment, self.limits, self.friction, k, &assumed, next);
-                if let Some(interval) = planes.backwards(assumed.x[0], here) {
+                if let Some(interval) = trial.backwards(k, &assumed, next, assumed.x[0], here) {
                     if best.is_none_or(|(of, _)| interval[1] > of[1]) {
                         best = Some((interval, k));
                     }
@@ -374,6 +376,7 @@ impl<T: RealField + Copy, const N: usize> Solver<'_, T, N> {
                     }
                 }
             }
+            first = trial.first;
             let Some((interval, k)) = best else {
                 failed = Some(i);
                 break;
@@ -402,8 +405,11 @@ impl<T: RealField + Copy, const N: usize> Solver<'_, T, N> {
             }
             let assumed = if segment.fresh { self.assumed(segment, after, assume) } else { segment.inner.assumed };
             let k = segment.time;
-            let planes = HalfPlanes::new(segment, self.limits, self.friction, k, &assumed, next);
-            let to = planes.forwards(x).min(next[1]).max(next[0]);
+            let mut trial = Trial::new(segment, self.limits, self.friction, assumed, x, first);
+            let to = trial.nearest(k, &assumed, next, next[1], |_| true);
+            first = trial.first;
+            // By construction there is one, within rounding.
+            let to = to.unwrap_or_else(|| trial.highest(k, &assumed, next)).min(next[1]).max(next[0]);
             segment.inner.interval = segment.inner.trial;
             segment.inner.assumed = assumed;
             segment.inner.law = Law { length: segment.length, x0: x, k, x2: to };

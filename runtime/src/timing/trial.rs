@@ -3,7 +3,7 @@
 //! With X2 known, x and u lie in short intervals, and so does every row. A row that these intervals keep is no bound of X2 there. So rows
 //! are formed only where the intervals do not keep them, and the X2 nearest to the wish within all formed rows is that within all rows.
 
-use super::inner::{of_row, HalfPlane, Interval};
+use super::inner::{backwards, of_row, others, HalfPlane, Interval};
 use super::limits::Limits;
 use super::model::JointFriction;
 use super::row::{least, most, Form, Quadratic, Window};
@@ -103,6 +103,7 @@ impl<'a, T: RealField + Copy, const N: usize> Trial<'a, T, N> {
         segment: &'a Segment<T, N>,
         limits: &'a Limits<T, N>,
         friction: &'a [JointFriction<T>; N],
+        assumed: Assumed<T>,
         x0: T,
         first: [Option<usize>; 2],
     ) -> Self {
@@ -116,7 +117,6 @@ impl<'a, T: RealField + Copy, const N: usize> Trial<'a, T, N> {
             square: [T::zero(); 2],
             sign: T::zero(),
         };
-        let assumed = segment.inner.assumed;
         let mut trial = Self {
             segment,
             limits,
@@ -181,7 +181,7 @@ impl<'a, T: RealField + Copy, const N: usize> Trial<'a, T, N> {
         // Each row leaves less of the interval.
         let is_left = |found: &Interval<T>| {
             let [low, high] = found.alone;
-            is_inside(low, high) && found.width() >= -slack * found.size() && serves(nearest(found))
+            is_inside(low, high) && found.width() >= -slack * found.size().max(x0) && serves(nearest(found))
         };
         let mut found = Interval::within(self.segment.length, k, assumed, next, x0);
         if !is_left(&found) {
@@ -214,8 +214,7 @@ impl<'a, T: RealField + Copy, const N: usize> Trial<'a, T, N> {
                 if doubtful == [false; 5] {
                     continue;
                 }
-                let rows = [2 * joint, 2 * joint + 1, 2 * (N + joint), 2 * (N + joint) + 1, 4 * N + joint];
-                for (index, doubtful) in rows.into_iter().zip(doubtful) {
+                for (index, doubtful) in rows::<N>(joint).into_iter().zip(doubtful) {
                     if doubtful && self.form(index) {
                         self.cut(self.count - 1, k, &mut found);
                         if !is_left(&found) {
@@ -229,6 +228,60 @@ impl<'a, T: RealField + Copy, const N: usize> Trial<'a, T, N> {
             }
         }
         Some(nearest(&found))
+    }
+
+    /// The X0 in [least, most] from which some X2 in `next` keeps all rows; `None` where there is no such X0. Where rows are kept at both
+    /// ends of the X0, they are kept between.
+    pub(super) fn backwards(&mut self, k: T, assumed: &Assumed<T>, next: [T; 2], least: T, most: T) -> Option<[T; 2]> {
+        if self.assumed != *assumed {
+            self.assume(assumed);
+        }
+        if !self.is_spread {
+            self.spread();
+        }
+        for index in self.first.into_iter().flatten() {
+            self.form(index);
+        }
+        let others = others(self.segment.length, k, assumed, next);
+        // Each round but the last one forms a row.
+        for _ in 0..=Segment::<T, N>::ROWS {
+            let found = backwards(least, most, |x0| self.interval(k, &others, x0))?;
+            let before = self.count;
+            for x0 in [found[1], found[0]] {
+                let [low, high] = self.interval(k, &others, x0).ends();
+                let reached = self.reached(k, x0.max(low).min(high));
+                for joint in 0..N {
+                    let rows = rows::<N>(joint).into_iter().zip(self.doubtful(joint, &reached));
+                    for (index, _) in rows.filter(|(_, doubtful)| *doubtful) {
+                        self.form(index);
+                    }
+                }
+            }
+            if self.count == before {
+                return Some(found);
+            }
+        }
+        None
+    }
+
+    /// The largest X2 that formed rows allow, even where rounding leaves none.
+    pub(super) fn highest(&mut self, k: T, assumed: &Assumed<T>, next: [T; 2]) -> T {
+        let others = others(self.segment.length, k, assumed, next);
+        self.interval(k, &others, self.x0).ends()[1]
+    }
+
+    /// The interval of X2 that formed rows and `others` leave for an X0.
+    fn interval(&mut self, k: T, [above, below]: &[[HalfPlane<T>; 4]; 2], x0: T) -> Interval<T> {
+        self.x0 = x0;
+        let mut found = Interval::new();
+        for at in 0..self.count {
+            self.cut(at, k, &mut found);
+        }
+        for (above, below) in above.iter().zip(below) {
+            found.lower(above, x0);
+            found.raise(below, x0);
+        }
+        found
     }
 
     /// Forms a row; `false` where it has been formed.
@@ -297,6 +350,11 @@ impl<'a, T: RealField + Copy, const N: usize> Trial<'a, T, N> {
     }
 }
 
+/// The rows of a joint: torque high, torque low, acceleration high, low, speed.
+fn rows<const N: usize>(joint: usize) -> [usize; 5] {
+    [2 * joint, 2 * joint + 1, 2 * (N + joint), 2 * (N + joint) + 1, 4 * N + joint]
+}
+
 /// The functions of a joint, as its rows have them.
 fn functions<T: RealField + Copy, const N: usize>(
     segment: &Segment<T, N>,
@@ -347,9 +405,21 @@ fn curve<T: RealField + Copy>(friction: &JointFriction<T>, of: &Functions<T>, as
 
 #[cfg(test)]
 mod tests {
-    use super::super::inner::HalfPlanes;
     use super::super::segment::Column;
     use super::*;
+
+    /// The interval of X2 that all rows leave.
+    fn of_all<const N: usize>(of: &Trial<'_, f64, N>, k: f64, assumed: &Assumed<f64>, next: [f64; 2], x0: f64) -> Interval<f64> {
+        let window = Window::new(assumed.x, assumed.touch);
+        let rows = (0..Segment::<f64, N>::ROWS)
+            .filter_map(|index| of_row(of.segment, index, of.limits, of.friction, assumed, &window))
+            .flat_map(|forms| forms.map(|form| HalfPlane::of(&form, k)));
+        let mut found = Interval::new();
+        for plane in rows.chain(others(of.segment.length, k, assumed, next).into_iter().flatten()) {
+            found.cut(&plane, x0);
+        }
+        found
+    }
 
     /// A trial leaves what all half-planes leave, though it forms few rows, and ends early only where that does not serve.
     #[test]
@@ -376,10 +446,10 @@ mod tests {
             }
             let (x0, target, next) = (random(), 2.0 * random() - 0.5, [0.0, 0.3 + random()]);
             let near = |[low, high]: [f64; 2]| target.max(low).min(high);
-            let mut trial = Trial::new(&segment, &limits, &friction, x0, [None; 2]);
+            let mut trial = Trial::new(&segment, &limits, &friction, segment.inner.assumed, x0, [None; 2]);
             for k in [0.0, 0.1, -0.1] {
                 let assumed = Assumed { x: [0.0, 0.2 + 1.3 * random()], touch: 0.1 + random(), u: 4.0 };
-                let at = HalfPlanes::new(&segment, &limits, &friction, k, &assumed, next).interval(x0);
+                let at = of_all(&trial, k, &assumed, next, x0);
                 let inside = x0 <= assumed.x[1].min(at.alone[1]) && x0 >= at.alone[0];
                 let expected = (inside && at.width() >= 0.0).then(|| near(at.ends()));
                 let found = trial.nearest(k, &assumed, next, target, |_| true);
@@ -389,6 +459,12 @@ mod tests {
                 assert_eq!(trial.nearest(k, &assumed, next, target, serves), expected.filter(|x2| serves(*x2)));
                 (some, none) = (some + usize::from(found.is_some()), none + usize::from(found.is_none()));
                 early += usize::from(expected.is_some_and(|x2| !serves(x2)));
+                let mut trial = Trial::new(&segment, &limits, &friction, assumed, x0, [None; 2]);
+                let range = backwards(assumed.x[0], assumed.x[1], |x0| of_all(&trial, k, &assumed, next, x0));
+                let found = trial.backwards(k, &assumed, next, assumed.x[0], assumed.x[1]);
+                assert_eq!(found.is_some(), range.is_some(), "{segment:?} {assumed:?} {k}");
+                let near = |a: f64, b: f64| (a - b).abs() <= 1e-12 * assumed.x[1];
+                assert!(found.into_iter().zip(range).all(|(a, b)| near(a[0], b[0]) && near(a[1], b[1])), "{found:?}, {range:?}");
             }
         }
         assert!(some > 1000 && none > 1000 && early > 300, "{some} {none} {early}");
