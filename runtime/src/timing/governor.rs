@@ -4,7 +4,7 @@ use super::law::Law;
 use super::model::JointFriction;
 use super::segment::{Assumed, Inner, Segment};
 use super::timed::Timing;
-use super::trial::Trial;
+use super::trial::{Formed, Trial};
 use crate::linalg::lit;
 use crate::reference::JointReference;
 use crate::scalar::seconds;
@@ -288,7 +288,8 @@ impl<'a, T: RealField + Copy, const N: usize> Governor<'a, T, N> {
             None => current,
         };
         let (limits, friction, next) = (&self.timing.limits, &self.timing.friction, self.next(self.segment));
-        let mut trial = Trial::new(part, limits, friction, part.inner.assumed, x, self.first);
+        let mut formed = Formed::new();
+        let mut trial = Trial::new(part, limits, friction, part.inner.assumed, x, self.first, &mut formed);
         let off = |x2: T| (x2 - target).abs();
         let mut best: Option<(T, usize, Law<T>, Rows<T>)> = None;
         // Those of the last choice first: the trials of others that come no nearer end early.
@@ -365,7 +366,8 @@ impl<T: RealField + Copy> Candidates<T> {
 /// From which x at the start of a segment some rows lead to an x in `next`: the interval around the timed motion.
 fn backwards<T: RealField + Copy, const N: usize>(timing: &Timing<'_, T, N>, segment: &Segment<T, N>, next: [T; 2]) -> [T; 2] {
     let candidates = Candidates::new(timing, segment);
-    let mut trial = Trial::new(segment, &timing.limits, &timing.friction, segment.inner.assumed, T::zero(), [None; 2]);
+    let (limits, friction, mut formed) = (&timing.limits, &timing.friction, Formed::new());
+    let mut trial = Trial::new(segment, limits, friction, segment.inner.assumed, T::zero(), [None; 2], &mut formed);
     let found: [_; ROWS] = core::array::from_fn(|i| {
         let Rows { k, assumed } = candidates.rows(i, None)?;
         trial.backwards(k, &assumed, next, assumed.x[0], assumed.x[1])

@@ -48,6 +48,7 @@ pub(super) fn node_bound<T: RealField + Copy, const N: usize>(
     right: Option<&Segment<T, N>>,
     limits: &Limits<T, N>,
     friction: &[JointFriction<T>; N],
+    side: &mut Side<T, N>,
 ) -> NodeBound<T> {
     let sides = [(left, 2), (right, 0)];
     let mut x = huge::<T>();
@@ -62,34 +63,24 @@ pub(super) fn node_bound<T: RealField + Copy, const N: usize>(
         }
     }
     // u may jump at a node, as q'' and the signs of friction do: each side has an interval of its own.
+    // Within a piece, and with the same signs, both have the same functions within their errors: one of them is enough.
+    let is_smooth = left.zip(right).is_some_and(|(left, right)| left.piece == right.piece && left.signs == right.signs);
     let mut bound = NodeBound::AtMost(x);
-    if let Some(segment) = left {
-        bound = bound_of_side(Side::new::<2>(segment, limits, friction), x);
+    if let Some(segment) = left.filter(|_| !is_smooth) {
+        side.fill::<2>(segment, limits, friction);
+        bound = side.bound(x);
     }
     match (bound, right) {
-        (NodeBound::AtMost(x), Some(segment)) => bound_of_side(Side::new::<0>(segment, limits, friction), x),
+        (NodeBound::AtMost(x), Some(segment)) => {
+            side.fill::<0>(segment, limits, friction);
+            side.bound(x)
+        }
         _ => bound,
     }
 }
 
-/// The largest x at most `x` for which some u keeps all rows of a side.
-fn bound_of_side<T: RealField + Copy, const N: usize>(mut side: Side<T, N>, x: T) -> NodeBound<T> {
-    // A first solution tells how large u is, and so how much the errors of m count.
-    let (first, u) = side.largest(x);
-    let from = match first {
-        // With these errors no row bounds more than without.
-        NodeBound::AtMost(first) if first == x => return NodeBound::AtMost(x),
-        NodeBound::AtMost(first) => x.min(first.max(T::zero()) * lit(1.0 + 1e-6)),
-        NodeBound::Nothing(_) => x,
-    };
-    for row in side.rows.as_flattened_mut() {
-        row.rest += row.m_error * u * lit(2.0);
-    }
-    side.largest(from).0
-}
-
 /// The rows with a slope at an end of a segment.
-struct Side<T, const N: usize> {
+pub(super) struct Side<T, const N: usize> {
     /// `count` of them.
     rows: [[AtNode<T>; 4]; N],
     count: usize,
@@ -98,10 +89,15 @@ struct Side<T, const N: usize> {
 }
 
 impl<T: RealField + Copy, const N: usize> Side<T, N> {
-    fn new<const END: usize>(segment: &Segment<T, N>, limits: &Limits<T, N>, friction: &[JointFriction<T>; N]) -> Self {
+    /// Storage without content.
+    pub(super) fn empty() -> Self {
         let zero = T::zero();
         let empty = AtNode { index: 0, m: zero, c: zero, v: zero, rest: zero, m_error: zero };
-        let mut side = Self { rows: [[empty; 4]; N], count: 0, curves: [[None; 4]; N], curved: false };
+        Self { rows: [[empty; 4]; N], count: 0, curves: [[None; 4]; N], curved: false }
+    }
+
+    fn fill<const END: usize>(&mut self, segment: &Segment<T, N>, limits: &Limits<T, N>, friction: &[JointFriction<T>; N]) {
+        (self.count, self.curved) = (0, false);
         segment.each_sloped(limits, friction, true, |index, row| {
             let at = AtNode {
                 index,
@@ -111,18 +107,31 @@ impl<T: RealField + Copy, const N: usize> Side<T, N> {
                 rest: row.bound + row.bound.abs() * lit(ROUNDING) + row.d_error - row.d[END],
                 m_error: row.m_error,
             };
-            if row.is_curved() {
-                side.curved = true;
-                if let Some(curve) = side.curves.as_flattened_mut().get_mut(side.count) {
-                    *curve = row.curve.map(|curve| curve.at(END));
-                }
-            }
-            if let Some(to) = side.rows.as_flattened_mut().get_mut(side.count) {
+            self.curved |= row.is_curved();
+            if let Some(to) = self.rows.as_flattened_mut().get_mut(self.count) {
                 *to = at;
             }
-            side.count += 1;
+            if let Some(to) = self.curves.as_flattened_mut().get_mut(self.count) {
+                *to = row.curve.map(|curve| curve.at(END));
+            }
+            self.count += 1;
         });
-        side
+    }
+
+    /// The largest x at most `x` for which some u keeps all rows of a self.
+    fn bound(&mut self, x: T) -> NodeBound<T> {
+        // A first solution tells how large u is, and so how much the errors of m count.
+        let (first, u) = self.largest(x);
+        let from = match first {
+            // With these errors no row bounds more than without.
+            NodeBound::AtMost(first) if first == x => return NodeBound::AtMost(x),
+            NodeBound::AtMost(first) => x.min(first.max(T::zero()) * lit(1.0 + 1e-6)),
+            NodeBound::Nothing(_) => x,
+        };
+        for row in self.rows.as_flattened_mut() {
+            row.rest += row.m_error * u * lit(2.0);
+        }
+        self.largest(from).0
     }
 
     /// Newton from the right on the width of the interval of u, and |u| there.

@@ -464,6 +464,11 @@ impl<T: RealField + Copy, const N: usize> Source<'_, T, N> {
         let [from, to] = segment.ends;
         let places = [from, (from + to) * half, to];
         let shift: T = lit(a as f64);
+        // At a node the polynomial has its value.
+        let nodes = places.map(|t| {
+            let node = [0u8, 1, 2].iter().position(|node| lit::<T>(f64::from(*node)) == t);
+            node.and_then(|node| window.get(a + node))
+        });
         let weights = places.map(|t| lagrange(t + shift));
         let width = (to - from) * half;
         // 1/(9 sqrt 3); over the ends of its interval a polynomial of degree 5 grows by (1 + 2 OVER)^5.
@@ -487,7 +492,8 @@ impl<T: RealField + Copy, const N: usize> Source<'_, T, N> {
                 }
                 sum
             };
-            let [left, middle, right] = [dot(&weights[0]), dot(&weights[1]), dot(&weights[2])];
+            let at = |place: usize| nodes[place].map_or_else(|| dot(&weights[place]), |node| node.torques[part].into());
+            let [left, middle, right] = [at(0), at(1), at(2)];
             let mut steepest = [T::zero(); N];
             for row in third {
                 for (steepest, value) in steepest.iter_mut().zip(dot(row)) {

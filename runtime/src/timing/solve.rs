@@ -5,12 +5,12 @@ use super::grid;
 use super::law::Law;
 use super::limits::Limits;
 use super::model::{JointFriction, PathDynamics};
-use super::outer::{self, NodeBound};
+use super::outer::{self, NodeBound, Side};
 use super::path::{number, JointPath, Piece};
 use super::polynomial;
 use super::segment::{limit, Assumed, Barrier, Interpolation, Node, Segment};
 use super::timed::Timing;
-use super::trial::Trial;
+use super::trial::{Formed, Trial};
 use crate::linalg::lit;
 use nalgebra::RealField;
 
@@ -175,12 +175,13 @@ impl<T: RealField + Copy, const N: usize> Solver<'_, T, N> {
             piece: segment.piece,
             fault,
         };
+        let mut side = Side::empty();
         for i in 0..segments.len() {
             let (left, right) = (i.checked_sub(1).and_then(|i| segments.get(i)), segments.get(i).filter(|_| i < count));
             if ![left, right].into_iter().flatten().any(|segment| segment.is_new) {
                 continue;
             }
-            match outer::node_bound(left, right, self.limits, self.friction) {
+            match outer::node_bound(left, right, self.limits, self.friction, &mut side) {
                 NodeBound::AtMost(x) => {
                     segments[i].changed |= x != segments[i].bound.node;
                     segments[i].bound.node = x;
@@ -340,6 +341,7 @@ impl<T: RealField + Copy, const N: usize> Solver<'_, T, N> {
         let mut failed = None;
         // The rows that bind are likely those of the neighbour.
         let mut first = [None; 2];
+        let mut formed = Formed::new();
         for i in (0..count).rev() {
             let near = segments.get(i.saturating_sub(1)..(i + 3).min(count + 1)).unwrap_or(&[]);
             let keeps = local && next == before && !near.iter().any(|of| of.changed);
@@ -365,7 +367,7 @@ impl<T: RealField + Copy, const N: usize> Solver<'_, T, N> {
             }
             ks[3] = Some((here + after - before - beyond) / lit(8.0));
             let mut best: Option<([T; 2], T)> = None;
-            let mut trial = Trial::new(segment, self.limits, self.friction, assumed, here, first);
+            let mut trial = Trial::new(segment, self.limits, self.friction, assumed, here, first, &mut formed);
             for k in ks.into_iter().flatten() {
                 if let Some(interval) = trial.backwards(k, &assumed, next, assumed.x[0], here) {
                     if best.is_none_or(|(of, _)| interval[1] > of[1]) {
@@ -405,7 +407,7 @@ impl<T: RealField + Copy, const N: usize> Solver<'_, T, N> {
             }
             let assumed = if segment.fresh { self.assumed(segment, after, assume) } else { segment.inner.assumed };
             let k = segment.time;
-            let mut trial = Trial::new(segment, self.limits, self.friction, assumed, x, first);
+            let mut trial = Trial::new(segment, self.limits, self.friction, assumed, x, first, &mut formed);
             let to = trial.nearest(k, &assumed, next, next[1], |_| true);
             first = trial.first;
             // By construction there is one, within rounding.

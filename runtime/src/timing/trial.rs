@@ -72,9 +72,19 @@ struct Reached<T> {
     root: Spread<T>,
 }
 
+/// Storage of formed rows, for one trial after another.
+#[derive(Debug)]
+pub(super) struct Formed<T, const N: usize>([[Option<FormedRow<T>>; 5]; N]);
+
+impl<T: RealField + Copy, const N: usize> Formed<T, N> {
+    pub(super) fn new() -> Self {
+        Self([[None; 5]; N])
+    }
+}
+
 /// A row that was formed; no k enters. `None` where it cannot bind.
 #[derive(Clone, Copy, Debug)]
-struct Formed<T> {
+struct FormedRow<T> {
     index: usize,
     forms: Option<[Form<T>; 5]>,
 }
@@ -92,7 +102,7 @@ pub(super) struct Trial<'a, T, const N: usize> {
     assumption: [Spread<T>; N],
     is_spread: bool,
     /// The rows that were formed for the last assumption: `count` of them.
-    formed: [[Option<Formed<T>>; 5]; N],
+    formed: &'a mut Formed<T, N>,
     count: usize,
     /// The rows that moved the lower and the upper end last.
     pub(super) first: [Option<usize>; 2],
@@ -106,6 +116,7 @@ impl<'a, T: RealField + Copy, const N: usize> Trial<'a, T, N> {
         assumed: Assumed<T>,
         x0: T,
         first: [Option<usize>; 2],
+        formed: &'a mut Formed<T, N>,
     ) -> Self {
         let zero = Spread { middle: T::zero(), reach: T::zero() };
         let none = Functions {
@@ -117,24 +128,22 @@ impl<'a, T: RealField + Copy, const N: usize> Trial<'a, T, N> {
             square: [T::zero(); 2],
             sign: T::zero(),
         };
-        let mut trial = Self {
+        Self {
             segment,
             limits,
             friction,
             x0,
-            joints: [none; N],
+            joints: core::array::from_fn(|joint| {
+                friction.get(joint).and_then(|friction| functions(segment, friction, joint)).unwrap_or(none)
+            }),
             assumed,
             window: Window::new(assumed.x, assumed.touch),
             assumption: [zero; N],
             is_spread: false,
-            formed: [[None; 5]; N],
+            formed,
             count: 0,
             first,
-        };
-        for (joint, (to, friction)) in trial.joints.iter_mut().zip(friction).enumerate() {
-            *to = functions(segment, friction, joint).unwrap_or(none);
         }
-        trial
     }
 
     /// Rows are formed anew.
@@ -286,20 +295,20 @@ impl<'a, T: RealField + Copy, const N: usize> Trial<'a, T, N> {
 
     /// Forms a row; `false` where it has been formed.
     fn form(&mut self, index: usize) -> bool {
-        let all = self.formed.as_flattened_mut();
+        let all = self.formed.0.as_flattened_mut();
         if all.iter().take(self.count).flatten().any(|of| of.index == index) {
             return false;
         }
         let forms = of_row(self.segment, index, self.limits, self.friction, &self.assumed, &self.window);
         let Some(to) = all.get_mut(self.count) else { return false };
-        *to = Some(Formed { index, forms });
+        *to = Some(FormedRow { index, forms });
         self.count += 1;
         true
     }
 
     /// What a formed row leaves.
     fn cut(&mut self, at: usize, k: T, found: &mut Interval<T>) {
-        let Some(Some(Formed { index, forms: Some(forms) })) = self.formed.as_flattened().get(at) else { return };
+        let Some(Some(FormedRow { index, forms: Some(forms) })) = self.formed.0.as_flattened().get(at) else { return };
         for form in forms {
             if let Some(first) = found.cut(&HalfPlane::of(form, k), self.x0).and_then(|end| self.first.get_mut(end)) {
                 *first = Some(*index);
@@ -446,7 +455,8 @@ mod tests {
             }
             let (x0, target, next) = (random(), 2.0 * random() - 0.5, [0.0, 0.3 + random()]);
             let near = |[low, high]: [f64; 2]| target.max(low).min(high);
-            let mut trial = Trial::new(&segment, &limits, &friction, segment.inner.assumed, x0, [None; 2]);
+            let mut formed_rows = Formed::new();
+            let mut trial = Trial::new(&segment, &limits, &friction, segment.inner.assumed, x0, [None; 2], &mut formed_rows);
             for k in [0.0, 0.1, -0.1] {
                 let assumed = Assumed { x: [0.0, 0.2 + 1.3 * random()], touch: 0.1 + random(), u: 4.0 };
                 let at = of_all(&trial, k, &assumed, next, x0);
@@ -459,7 +469,8 @@ mod tests {
                 assert_eq!(trial.nearest(k, &assumed, next, target, serves), expected.filter(|x2| serves(*x2)));
                 (some, none) = (some + usize::from(found.is_some()), none + usize::from(found.is_none()));
                 early += usize::from(expected.is_some_and(|x2| !serves(x2)));
-                let mut trial = Trial::new(&segment, &limits, &friction, assumed, x0, [None; 2]);
+                let mut formed_rows = Formed::new();
+                let mut trial = Trial::new(&segment, &limits, &friction, assumed, x0, [None; 2], &mut formed_rows);
                 let range = backwards(assumed.x[0], assumed.x[1], |x0| of_all(&trial, k, &assumed, next, x0));
                 let found = trial.backwards(k, &assumed, next, assumed.x[0], assumed.x[1]);
                 assert_eq!(found.is_some(), range.is_some(), "{segment:?} {assumed:?} {k}");
