@@ -65,11 +65,15 @@ pub(super) fn others<T: RealField + Copy>(h: T, k: T, assumed: &Assumed<T>, next
     ]
 }
 
-/// The X0 in [least, most] for which the interval of X2 is not empty; `None` where there is no such X0.
-pub(super) fn backwards<T: RealField + Copy>(least: T, most: T, mut interval: impl FnMut(T) -> Interval<T>) -> Option<[T; 2]> {
+/// The X0 in [least, most] for which the interval of X2 is not empty: the ends, each with that interval; `None` where there is no such X0.
+pub(super) fn backwards<T: RealField + Copy>(
+    least: T,
+    most: T,
+    mut interval: impl FnMut(T) -> Interval<T>,
+) -> Option<[(T, [T; 2]); 2]> {
     let (mut low, mut high) = (least, most);
     let tiny = lit::<T>(64.0) * T::default_epsilon();
-    let mut found = false;
+    let mut found = None;
     for _ in 0..60 {
         let at = interval(high);
         if at.alone[1] < high {
@@ -83,7 +87,7 @@ pub(super) fn backwards<T: RealField + Copy>(least: T, most: T, mut interval: im
         let width = at.width();
         // It is a difference of X0 and X2, and rounds as these do.
         if width >= -tiny * at.size().max(high) {
-            found = true;
+            found = Some(at.ends());
             break;
         }
         let slope = at.high.1 - at.low.1;
@@ -95,20 +99,17 @@ pub(super) fn backwards<T: RealField + Copy>(least: T, most: T, mut interval: im
             return None;
         }
     }
-    if !found {
-        return None;
-    }
     // Within the interval, not on its edge, so that rounding does not leave it empty.
     high *= T::one() - tiny;
-    let top = high;
+    let top = (high, found?);
     for _ in 0..60 {
-        if low >= top {
+        if low >= high {
             return Some([top, top]);
         }
         let at = interval(low);
         let width = at.width();
         if width >= T::zero() {
-            return Some([low, top]);
+            return Some([(low, at.ends()), top]);
         }
         let slope = at.high.1 - at.low.1;
         if !(slope > T::zero()) {

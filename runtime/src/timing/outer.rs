@@ -10,7 +10,7 @@ use super::law::Law;
 use super::limits::Limits;
 use super::model::JointFriction;
 use super::row::{Row, Window};
-use super::segment::{Barrier, Segment};
+use super::segment::{Barrier, Column, Segment};
 use crate::linalg::lit;
 use nalgebra::RealField;
 
@@ -98,24 +98,30 @@ impl<T: RealField + Copy, const N: usize> Side<T, N> {
 
     fn fill<const END: usize>(&mut self, segment: &Segment<T, N>, limits: &Limits<T, N>, friction: &[JointFriction<T>; N]) {
         (self.count, self.curved) = (0, false);
-        segment.each_sloped(limits, friction, true, |index, row| {
-            let at = AtNode {
-                index,
-                m: row.m[END],
-                c: row.c[END] - row.c_error,
-                v: row.v[END],
-                rest: row.bound + row.bound.abs() * lit(ROUNDING) + row.d_error - row.d[END],
-                m_error: row.m_error,
-            };
-            self.curved |= row.is_curved();
-            if let Some(to) = self.rows.as_flattened_mut().get_mut(self.count) {
-                *to = at;
-            }
-            if let Some(to) = self.curves.as_flattened_mut().get_mut(self.count) {
-                *to = row.curve.map(|curve| curve.at(END));
-            }
-            self.count += 1;
-        });
+        segment.each_sloped(
+            limits,
+            friction,
+            true,
+            |_, _| true,
+            |index, row| {
+                let at = AtNode {
+                    index,
+                    m: row.m[END],
+                    c: row.c[END] - row.c_error,
+                    v: row.v[END],
+                    rest: row.bound + row.bound.abs() * lit(ROUNDING) + row.d_error - row.d[END],
+                    m_error: row.m_error,
+                };
+                self.curved |= row.is_curved();
+                if let Some(to) = self.rows.as_flattened_mut().get_mut(self.count) {
+                    *to = at;
+                }
+                if let Some(to) = self.curves.as_flattened_mut().get_mut(self.count) {
+                    *to = row.curve.map(|curve| curve.at(END));
+                }
+                self.count += 1;
+            },
+        );
     }
 
     /// The largest x at most `x` for which some u keeps all rows of a self.
@@ -271,35 +277,38 @@ pub(super) fn least<T: RealField + Copy, const N: usize, const BACK: bool>(
     x0: T,
 ) -> Option<Barrier<T>> {
     let h = segment.length;
-    let is_barrier = |row: &Row<T>| row.m.iter().all(|m| if BACK { *m < -row.m_error } else { *m > row.m_error });
+    // m > 0, seen from where the barrier begins, on all of the segment.
+    let is_barrier = |m: &Column<T>, side: usize| {
+        let positive = (side == 0) != BACK;
+        m.quadratic.iter().all(|value| if positive { *value > m.error } else { *value < -m.error })
+    };
     // Rows in the order of what Euler and the trapezoidal rule say.
-    let mut estimates = [[huge::<T>(); 4]; N];
-    segment.each_sloped(limits, friction, true, |index, row| {
-        if !is_barrier(&row) {
-            return;
-        }
+    let mut estimates = [[(huge::<T>(), 0); 4]; N];
+    let mut count = 0;
+    segment.each_sloped(limits, friction, true, is_barrier, |index, row| {
         let (from, to, sign) = if BACK { (2, 0, -T::one()) } else { (0, 2, T::one()) };
         let u = |end: usize, x: T| (row.bound - row.d[end] - row.c[end] * x - row.curved(end, x)) / (row.m[end] * sign);
         let first = u(from, x0);
-        if let Some(estimate) = estimates.as_flattened_mut().get_mut(index) {
-            *estimate = x0 + h * (first + u(to, x0 + first * h * lit(2.0)));
+        if let Some(estimate) = estimates.as_flattened_mut().get_mut(count) {
+            *estimate = (x0 + h * (first + u(to, x0 + first * h * lit(2.0))), index);
+            count += 1;
         }
     });
     let mut best: Option<Barrier<T>> = None;
-    for _ in 0..Segment::<T, N>::SLOPED {
+    for _ in 0..count {
         let mut next = (huge::<T>(), 0);
-        for (index, value) in estimates.as_flattened().iter().enumerate() {
-            if *value < next.0 {
-                next = (*value, index);
+        let mut place = None;
+        for estimate in estimates.as_flattened_mut().iter_mut().take(count) {
+            if estimate.0 < next.0 {
+                next = *estimate;
+                place = Some(estimate);
             }
         }
-        let (value, index) = next;
-        if value >= huge() || best.is_some_and(|b| value > b.law.x2) {
+        let ((value, index), Some(estimate)) = (next, place) else { break };
+        if best.is_some_and(|b| value > b.law.x2) {
             break;
         }
-        if let Some(estimate) = estimates.as_flattened_mut().get_mut(index) {
-            *estimate = huge();
-        }
+        estimate.0 = huge();
         let row = segment.row(index, limits, friction, true).map(|row| if BACK { row.reversed() } else { row });
         if let Some(law) = row.and_then(|row| barrier(&row, h, x0, value)) {
             if best.is_none_or(|b| law.x2 < b.law.x2) {

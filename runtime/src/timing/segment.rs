@@ -206,24 +206,26 @@ impl<T: RealField + Copy, const N: usize> Segment<T, N> {
         }
     }
 
-    /// Calls `with` with each row into which a slope of x enters, and its index, in order.
+    /// Calls `with` with each row into which a slope of x enters and whose m and side (0: high, 1: low) are wanted, and its index, in order.
     #[inline]
     pub(super) fn each_sloped(
         &self,
         limits: &Limits<T, N>,
         friction: &[JointFriction<T>; N],
         relaxed: bool,
+        wanted: impl Fn(&Column<T>, usize) -> bool,
         mut with: impl FnMut(usize, Row<T>),
     ) {
-        for (joint, (effort, friction)) in limits.effort.iter().zip(friction).enumerate() {
-            for side in 0..2 {
+        for (joint, ((effort, friction), m)) in limits.effort.iter().zip(friction).zip(&self.torques[0]).enumerate() {
+            for side in (0..2).filter(|side| wanted(m, *side)) {
                 if let Some(row) = self.torque(joint, side, effort, friction, relaxed) {
                     with(2 * joint + side, row);
                 }
             }
         }
-        for (joint, limit) in limits.acceleration.iter().enumerate() {
-            for side in 0..2 {
+        for (joint, (limit, m)) in limits.acceleration.iter().zip(&self.rates[0]).enumerate().filter(|(_, (l, _))| l.is_finite())
+        {
+            for side in (0..2).filter(|side| wanted(m, *side)) {
                 if let Some(row) = self.acceleration(joint, side, *limit) {
                     with(2 * (N + joint) + side, row);
                 }

@@ -134,7 +134,8 @@ impl<'a, T: RealField + Copy, const N: usize> Trial<'a, T, N> {
             friction,
             x0,
             joints: core::array::from_fn(|joint| {
-                friction.get(joint).and_then(|friction| functions(segment, friction, joint)).unwrap_or(none)
+                let is_limited = limits.acceleration.get(joint).is_some_and(|limit| limit.is_finite());
+                friction.get(joint).and_then(|friction| functions(segment, friction, joint, is_limited)).unwrap_or(none)
             }),
             assumed,
             window: Window::new(assumed.x, assumed.touch),
@@ -256,8 +257,8 @@ impl<'a, T: RealField + Copy, const N: usize> Trial<'a, T, N> {
         for _ in 0..=Segment::<T, N>::ROWS {
             let found = backwards(least, most, |x0| self.interval(k, &others, x0))?;
             let before = self.count;
-            for x0 in [found[1], found[0]] {
-                let [low, high] = self.interval(k, &others, x0).ends();
+            for (x0, [low, high]) in found {
+                self.x0 = x0;
                 let reached = self.reached(k, x0.max(low).min(high));
                 for joint in 0..N {
                     let rows = rows::<N>(joint).into_iter().zip(self.doubtful(joint, &reached));
@@ -267,7 +268,7 @@ impl<'a, T: RealField + Copy, const N: usize> Trial<'a, T, N> {
                 }
             }
             if self.count == before {
-                return Some(found);
+                return Some(found.map(|(x0, _)| x0));
             }
         }
         None
@@ -364,11 +365,12 @@ fn rows<const N: usize>(joint: usize) -> [usize; 5] {
     [2 * joint, 2 * joint + 1, 2 * (N + joint), 2 * (N + joint) + 1, 4 * N + joint]
 }
 
-/// The functions of a joint, as its rows have them.
+/// The functions of a joint, as its rows have them; those of its acceleration if that `is_limited`.
 fn functions<T: RealField + Copy, const N: usize>(
     segment: &Segment<T, N>,
     friction: &JointFriction<T>,
     joint: usize,
+    is_limited: bool,
 ) -> Option<Functions<T>> {
     let [m, c, g] = [0, 1, 2].map(|part: usize| segment.torques.get(part).and_then(|of| of.get(joint)));
     let [rate, curvature, square] = [0, 1, 2].map(|part: usize| segment.rates.get(part).and_then(|of| of.get(joint)));
@@ -380,14 +382,15 @@ fn functions<T: RealField + Copy, const N: usize>(
         let size = Spread::of(g.quadratic, zero).size();
         d = d.plus(Spread::between(zero, size).scaled(sign * friction.load));
     }
-    let rates = Spread::of(rate.quadratic, zero);
+    let none = Spread { middle: zero, reach: zero };
+    let rates = if is_limited || friction.viscous != zero { Spread::of(rate.quadratic, zero) } else { none };
     let [q0, q1, q2] = square.quadratic;
     Some(Functions {
         torque: [Spread::of(m.quadratic, zero), Spread::of(c.quadratic, c.error), d],
         v: (friction.viscous != zero).then(|| rates.scaled(friction.viscous)),
         rate: rates,
         rate_error: rate.error,
-        curvature: Spread::of(curvature.quadratic, curvature.error),
+        curvature: if is_limited { Spread::of(curvature.quadratic, curvature.error) } else { none },
         square: [(q0 + q1 + q1 + q2) * lit(0.25), most(most(q0, q1), q2).max(zero) + square.error],
         sign,
     })
@@ -472,6 +475,7 @@ mod tests {
                 let mut formed_rows = Formed::new();
                 let mut trial = Trial::new(&segment, &limits, &friction, assumed, x0, [None; 2], &mut formed_rows);
                 let range = backwards(assumed.x[0], assumed.x[1], |x0| of_all(&trial, k, &assumed, next, x0));
+                let range = range.map(|range| range.map(|(x0, _)| x0));
                 let found = trial.backwards(k, &assumed, next, assumed.x[0], assumed.x[1]);
                 assert_eq!(found.is_some(), range.is_some(), "{segment:?} {assumed:?} {k}");
                 let near = |a: f64, b: f64| (a - b).abs() <= 1e-12 * assumed.x[1];
