@@ -351,6 +351,11 @@ impl Pool {
         copy
     }
 
+    /// Whether constants have values here, not fingerprints alone.
+    pub fn knows_values(&self) -> bool {
+        !self.fingerprints_only
+    }
+
     /// Says what g_i is, of whose size and sign there are symbols.
     pub fn set_gravity(&mut self, joint: u16, torque: ExprId) {
         self.gravity.insert(joint, torque);

@@ -20,7 +20,7 @@ mod virtual_joints;
 use crate::exact::Number;
 pub use crate::kinds::Target;
 use crate::kinds::{JointKind, TaskRow};
-use crate::manipulator::{GivenBeside, Manipulator};
+use crate::manipulator::{GivenBeside, Manipulator, Tip};
 
 pub use chain::{Arrangement, Given};
 pub use classes::Regional;
@@ -35,6 +35,8 @@ use jacobian::Jacobian;
 pub struct Solved {
     /// Its name; `None` where the arm has one end effector without a name.
     pub tip: Option<String>,
+    /// The beginning of the names of its functions, `left_` of `left`; empty without a name.
+    pub prefix: String,
     /// The arm; of a named end effector the part that moves it, whose coordinates are those of the postures.
     pub arm: Manipulator,
     /// The construction, or the reason why there is none.
@@ -52,11 +54,11 @@ impl Solved {
 
     /// One of the named end effectors.
     pub fn at(manipulator: &Manipulator, tip: usize) -> Solved {
-        Solved::of(manipulator.arm_to(tip), Some(manipulator.tips[tip].name.clone()))
+        Solved::of(manipulator.arm_to(tip), Some(&manipulator.tips[tip]))
     }
 
-    fn of(arm: Manipulator, tip: Option<String>) -> Solved {
-        Solved { found: of(&arm), arm, tip }
+    fn of(arm: Manipulator, tip: Option<&Tip>) -> Solved {
+        Solved { found: of(&arm), arm, tip: tip.map(|tip| tip.name.clone()), prefix: tip.map_or_else(String::new, Tip::prefix) }
     }
 
     /// `of left` behind a noun; nothing where the end effector has no name.
@@ -66,8 +68,7 @@ impl Solved {
 
     /// Its name where functions have their names: `left_inverse_kinematics` of `left`.
     pub fn name(&self) -> String {
-        let prefix = self.tip.as_ref().map_or_else(String::new, |tip| tip.to_ascii_lowercase() + "_");
-        prefix + "inverse_kinematics"
+        format!("{}inverse_kinematics", self.prefix)
     }
 
     /// Class, steps and singular postures, or why there are none, as lines of text.

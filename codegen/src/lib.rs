@@ -175,7 +175,7 @@ pub struct Solver<'a> {
 impl Solver<'_> {
     /// Part of the names of its files: `_left` of an end effector with this name, nothing of one without.
     pub fn infix(&self) -> String {
-        self.solved.tip.as_ref().map_or_else(String::new, |tip| format!("_{}", tip.to_ascii_lowercase()))
+        self.solved.prefix.strip_suffix('_').map_or_else(String::new, |name| format!("_{name}"))
     }
 
     /// The end effector and its construction.

@@ -338,6 +338,16 @@ def _function_of(state: tuple[str, str, Any], name: str) -> Any:
     return getattr(_restored(*state), name)
 
 
+def _postures_of(arm: Any, tip: str) -> Any:
+    """`inverse_kinematics` of a named end effector."""
+
+    def inverse_kinematics(pose: Any = None, redundancy: Any = None, *, position: Any = None, rotation: Any = None, threads: int = 1) -> Any:
+        return arm.inverse_kinematics(pose, redundancy, position, rotation, threads, tip)
+
+    inverse_kinematics.__doc__ = f"All postures at a pose of `{tip}`; see `Robot.inverse_kinematics`."
+    return inverse_kinematics
+
+
 class Robot:
     """A valid arm. Its functions are attributes: `robot.gravity(q)`; `robot.functions` has their names.
 
@@ -358,6 +368,10 @@ class Robot:
         functions = {function.__name__: function for function in arm.functions(state)}
         own.update(functions)
         own["functions"] = tuple(functions)
+        for tip, prefix, coordinates in arm.tips:
+            own[prefix + "coordinates"] = tuple(coordinates)
+            own[prefix + "inverse_kinematics"] = _postures_of(arm, tip)
+            own[prefix + "inverse_kinematics_redundancy"] = lambda q, tip=tip: arm.inverse_kinematics_redundancy(q, tip)
 
     @property
     def text(self) -> str:
@@ -435,20 +449,23 @@ class Robot:
         the arm's target is a position. redundancy: what `redundancy` names. Leading axes are poses, and broadcast. threads: how many
         share the poses; 0 is as many as there are processors.
 
+        A robot whose end effectors have names has a function of each, with the same arguments: of `left` `left_inverse_kinematics` and
+        `left_inverse_kinematics_redundancy`. Entry k of its postures belongs to entry `left_coordinates[k]` of q.
+
         Raises ValueError if the arm has no inverse kinematics, and says why.
         """
-        return self._arm.inverse_kinematics(pose, redundancy, position, rotation, threads)
+        return self._arm.inverse_kinematics(pose, redundancy, position, rotation, threads, None)
 
     @property
     def redundancy(self) -> str | None:
         """What `inverse_kinematics` is given beside a pose, where the arm has one joint more than the target asks for: the name of a joint
         (its value, rad or m) or `"swivel"` (the angle of the elbow about the line from shoulder to wrist, rad). Else None.
         """
-        return self._arm.redundancy()
+        return self._arm.redundancy(None)
 
     def inverse_kinematics_redundancy(self, q: Any) -> Any:
         """The redundancy with which `inverse_kinematics` finds the posture q again: a float; of an array of postures, an array."""
-        return self._arm.inverse_kinematics_redundancy(q)
+        return self._arm.inverse_kinematics_redundancy(q, None)
 
     def prepare(self, *names: str) -> None:
         """Derives functions now, on all processors, instead of at their first calls; all that the arm has if none is named."""

@@ -10,7 +10,7 @@ use pyo3::types::{PyList, PyTuple};
 
 use crate::faults::guarded;
 use crate::numbers::{array, axes, broadcast, fresh, granted, on_threads, real, spread, MANY};
-use crate::robot::Robot;
+use crate::robot::EndEffector;
 
 /// Where the end effector is to be, as it is given: a pose, or its parts.
 pub(crate) struct Target<'py> {
@@ -61,19 +61,19 @@ const NO_TURN: [[f64; 3]; 3] = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0
 /// The postures at a pose; at an array of poses lists of them.
 pub(crate) fn solved<'py>(
     py: Python<'py>,
-    robot: &Arc<Robot>,
+    end: &Arc<EndEffector>,
     target: Target<'py>,
     redundancy: Option<Bound<'py, PyAny>>,
     threads: i64,
 ) -> PyResult<Bound<'py, PyAny>> {
-    let solver = robot.solver(py)?;
+    let solver = end.solver(py)?;
     let threads = usize::try_from(threads).map_err(|_| PyValueError::new_err(format!("threads: 0 or more, not {threads}")))?;
     if let (Some(pose), None, None, None, None) =
         (&target.pose, &target.position, &target.rotation, &redundancy, &solver.of().redundancy)
     {
         if let Some(pose) = entries(pose) {
             let found = solver.solve(&pose, None).expect("the arm has no redundancy");
-            return Ok(Bound::new(py, Postures::new(robot, found, &pose))?.into_any());
+            return Ok(Bound::new(py, Postures::new(end, found, &pose))?.into_any());
         }
     }
     let numpy = py.import("numpy")?;
@@ -92,7 +92,7 @@ pub(crate) fn solved<'py>(
         _ => return Err(PyTypeError::new_err("a pose, or its position and rotation, not both")),
     };
     let targets = parts.len();
-    match (redundancy, robot.redundancy(py)?) {
+    match (redundancy, end.redundancy(py)?) {
         (Some(given), Some(_)) => parts.push(part("redundancy", &[], &given)?),
         (None, None) => {}
         (Some(_), None) => {
@@ -147,7 +147,7 @@ pub(crate) fn solved<'py>(
         };
         py.detach(|| on_threads(granted(threads).min(states.div_ceil(MANY)), work));
     }
-    let named = |(state, found)| Postures::new(robot, found, &pose(state));
+    let named = |(state, found)| Postures::new(end, found, &pose(state));
     nested(py, &lead, &mut found.into_iter().flatten().enumerate().map(named))
 }
 
@@ -192,13 +192,13 @@ fn nested<'py>(py: Python<'py>, lead: &[usize], all: &mut impl Iterator<Item = P
 }
 
 /// The redundancies of postures: a float of one, an array of several.
-pub(crate) fn redundancy_of<'py>(py: Python<'py>, robot: &Arc<Robot>, q: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyAny>> {
-    let solver = robot.solver(py)?;
+pub(crate) fn redundancy_of<'py>(py: Python<'py>, end: &Arc<EndEffector>, q: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyAny>> {
+    let solver = end.solver(py)?;
     if solver.of().redundancy.is_none() {
         return Err(PyValueError::new_err("the arm has no joint more than the target asks for: it has no redundancy"));
     }
     let numpy = py.import("numpy")?;
-    let dof = robot.model.manipulator.dof();
+    let dof = end.arm.dof();
     let q = array(&numpy, "q", dof, q)?;
     let lead = q.shape()[..q.ndim() - 1].to_vec();
     let held = q.try_readonly().map_err(|error| PyValueError::new_err(error.to_string()))?;
@@ -214,20 +214,20 @@ pub(crate) fn redundancy_of<'py>(py: Python<'py>, robot: &Arc<Robot>, q: &Bound<
 /// `len` is their number; iteration and indices give their joint variables. Attributes are new arrays at each access.
 #[pyclass(frozen, module = "armgen")]
 pub(crate) struct Postures {
-    robot: Arc<Robot>,
+    end: Arc<EndEffector>,
     found: Found<f64>,
     /// Why the pose is invalid.
     reason: Option<String>,
 }
 
 impl Postures {
-    fn new(robot: &Arc<Robot>, found: Found<f64>, pose: &[[f64; 4]; 4]) -> Postures {
+    fn new(end: &Arc<EndEffector>, found: Found<f64>, pose: &[[f64; 4]; 4]) -> Postures {
         let reason = (found.verdict == Verdict::Invalid).then(|| why_invalid(pose));
-        Postures { robot: robot.clone(), found, reason }
+        Postures { end: end.clone(), found, reason }
     }
 
     fn dof(&self) -> usize {
-        self.robot.model.manipulator.dof()
+        self.end.arm.dof()
     }
 }
 
@@ -273,7 +273,7 @@ impl Postures {
     /// Its name; empty where the construction has no branches.
     #[getter]
     fn branch_names<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyTuple>> {
-        let names = &self.robot.solver(py)?.of().branches;
+        let names = &self.end.solver(py)?.of().branches;
         let name = |branch: &u16| names.get(usize::from(*branch)).map_or("", String::as_str);
         PyTuple::new(py, self.found.branch.iter().map(name))
     }
@@ -295,15 +295,15 @@ impl Postures {
     /// The postures within the position limits. Angles are moved by whole turns into them, by as few as possible, and joint variables that rounding
     /// moved beyond a limit are put at it. The verdict stays as it was.
     fn within_limits(&self, py: Python<'_>) -> PyResult<Postures> {
-        let solver = self.robot.solver(py)?;
-        let found = solver.within(&self.found, |joint| self.robot.position_limits(joint));
-        Ok(Postures { robot: self.robot.clone(), found, reason: self.reason.clone() })
+        let solver = self.end.solver(py)?;
+        let found = solver.within(&self.found, |joint| self.end.position_limits(joint));
+        Ok(Postures { end: self.end.clone(), found, reason: self.reason.clone() })
     }
 
     /// The joint variables whose largest difference from q is smallest, angles modulo whole turns; None if there is no posture.
     fn nearest_to<'py>(&self, py: Python<'py>, q: &Bound<'py, PyAny>) -> PyResult<Option<Bound<'py, PyArray1<f64>>>> {
         guarded(py, || {
-            let (solver, dof) = (self.robot.solver(py)?, self.dof());
+            let (solver, dof) = (self.end.solver(py)?, self.dof());
             let q = array(&py.import("numpy")?, "q", dof, q)?;
             if q.ndim() != 1 {
                 return Err(PyValueError::new_err(format!("q: the shape is {}, not {}", axes(q.shape()), axes(&[dof]))));
@@ -333,7 +333,7 @@ impl Postures {
     fn __repr__(&self) -> String {
         let postures = if self.found.len() == 1 { "posture" } else { "postures" };
         let reason = self.reason.as_ref().map_or(String::new(), |reason| format!(": {reason}"));
-        let (name, count, verdict) = (&self.robot.model.manipulator.name, self.found.len(), self.verdict());
+        let (name, count, verdict) = (&self.end.arm.name, self.found.len(), self.verdict());
         format!("<armgen.Postures of {name}: {count} {postures}, {verdict}{reason}>")
     }
 }

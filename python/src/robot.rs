@@ -34,8 +34,52 @@ pub(crate) struct Robot {
     places: Places,
     pub(crate) functions: Vec<Slot>,
     absent: Vec<(String, String)>,
-    /// What finds its postures; the reason where nothing does.
+    /// The end effectors: one, or those with names in the order of the description.
+    ends: Vec<Arc<EndEffector>>,
+}
+
+/// An end effector and what finds its postures.
+pub(crate) struct EndEffector {
+    /// The arm; of a named end effector the part that moves it.
+    pub(crate) arm: Manipulator,
+    /// What finds the postures, made at the first use; the reason where nothing does.
     solver: OnceLock<Result<Solver<f64>, String>>,
+}
+
+impl EndEffector {
+    fn all(arm: &Manipulator) -> Vec<Arc<EndEffector>> {
+        let of = |arm| Arc::new(EndEffector { arm, solver: OnceLock::new() });
+        match arm.tips.len() {
+            0 => vec![of(arm.clone())],
+            count => (0..count).map(|tip| of(arm.arm_to(tip))).collect(),
+        }
+    }
+
+    /// What finds its postures, made now if it was not before.
+    pub(crate) fn solver(&self, py: Python<'_>) -> PyResult<&Solver<f64>> {
+        let make = || self.solver.get_or_init(|| armgen_evaluate::solver(&self.arm));
+        let found = self.solver.get().unwrap_or_else(|| py.detach(make));
+        found.as_ref().map_err(|reason| PyValueError::new_err(format!("there is no `inverse_kinematics` of this arm: {reason}")))
+    }
+
+    /// What is given to it beside a pose: the name of a joint, or "swivel".
+    pub(crate) fn redundancy(&self, py: Python<'_>) -> PyResult<Option<&str>> {
+        let name = |redundancy: &Redundancy<f64>| match redundancy {
+            Redundancy::Joint(given) => self.arm.joints[self.arm.path_to(self.arm.tip.index())[given.joint]].name.as_str(),
+            Redundancy::Swivel => "swivel",
+        };
+        self.solver(py).map(|solver| solver.of().redundancy.as_ref().map(name))
+    }
+
+    /// The lower and the upper end of a coordinate's range, infinite where there is none.
+    pub(crate) fn position_limits(&self, coordinate: usize) -> [f64; 2] {
+        position_limits(&self.arm, coordinate)
+    }
+}
+
+fn position_limits(arm: &Manipulator, coordinate: usize) -> [f64; 2] {
+    let limits = arm.coordinates()[coordinate].limits.position.as_ref();
+    limits.map_or([f64::NEG_INFINITY, f64::INFINITY], |limits| limits.each_ref().map(Number::to_f64))
 }
 
 /// A function that the arm has.
@@ -56,7 +100,8 @@ impl Robot {
                 None => functions.push(Slot { quantity, with, derived: OnceLock::new() }),
             }
         }
-        Robot { source, model, places, functions, absent, solver: OnceLock::new() }
+        let ends = EndEffector::all(&model.manipulator);
+        Robot { source, model, places, functions, absent, ends }
     }
 
     /// A function, derived now if it was not before.
@@ -74,27 +119,21 @@ impl Robot {
         self.functions[index].derived.get()?.as_ref().ok()
     }
 
-    /// What finds its postures, made now if it was not before.
-    pub(crate) fn solver(&self, py: Python<'_>) -> PyResult<&Solver<f64>> {
-        let arm = &self.model.manipulator;
-        let found = self.solver.get().unwrap_or_else(|| py.detach(|| self.solver.get_or_init(|| armgen_evaluate::solver(arm))));
-        found.as_ref().map_err(|reason| PyValueError::new_err(format!("there is no `inverse_kinematics` of this arm: {reason}")))
-    }
-
-    /// What is given to it beside a pose: the name of a joint, or "swivel".
-    pub(crate) fn redundancy(&self, py: Python<'_>) -> PyResult<Option<&str>> {
-        let name = |redundancy: &Redundancy<f64>| match redundancy {
-            Redundancy::Joint(given) => self.model.manipulator.joints[given.joint].name.as_str(),
-            Redundancy::Swivel => "swivel",
+    /// The end effector that is asked for, by the name of one that has a name.
+    fn end(&self, tip: Option<&str>) -> PyResult<&Arc<EndEffector>> {
+        let tips = &self.model.manipulator.tips;
+        let Some(name) = tip else {
+            if tips.is_empty() {
+                return Ok(&self.ends[0]);
+            }
+            let names: Vec<String> = tips.iter().map(|tip| format!("`{}inverse_kinematics`", tip.prefix())).collect();
+            return Err(PyValueError::new_err(format!(
+                "there is no `inverse_kinematics` of this arm: each end effector has its own, {}",
+                names.join(", ")
+            )));
         };
-        self.solver(py).map(|solver| solver.of().redundancy.as_ref().map(name))
-    }
-
-    /// The lower and the upper end of a joint's range, infinite where there is none.
-    pub(crate) fn position_limits(&self, joint: usize) -> [f64; 2] {
-        let coordinates = self.model.manipulator.coordinates();
-        let limits = coordinates[joint].limits.position.as_ref();
-        limits.map_or([f64::NEG_INFINITY, f64::INFINITY], |limits| limits.each_ref().map(Number::to_f64))
+        let place = tips.iter().position(|tip| tip.name == name);
+        place.map(|place| &self.ends[place]).ok_or_else(|| PyValueError::new_err(format!("there is no end effector `{name}`")))
     }
 
     /// The functions of these names, which the arm has.
@@ -129,7 +168,7 @@ impl Arm {
         let coordinates = arm.coordinates();
         facts.set_item("joint_names", PyTuple::new(py, coordinates.iter().map(|of| &of.joint.name))?)?;
         facts.set_item("revolute", coordinates.iter().map(|of| of.joint.kind == JointKind::Revolute).collect::<Vec<_>>())?;
-        let positions = (0..coordinates.len()).map(|joint| self.robot.position_limits(joint).to_vec());
+        let positions = (0..coordinates.len()).map(|joint| position_limits(arm, joint).to_vec());
         facts.set_item("position_limits", positions.collect::<Vec<_>>())?;
         let limits = coordinates.iter().map(|of| &of.limits);
         facts.set_item("velocity_limits", limits.clone().map(|own| limit(&own.velocity)).collect::<Vec<_>>())?;
@@ -206,8 +245,17 @@ impl Arm {
         made.map(BTreeMap::from_iter).map_err(PyValueError::new_err)
     }
 
-    /// All postures at a pose or at its position and rotation; at arrays of them lists of these.
-    #[pyo3(signature = (pose, redundancy, position, rotation, threads))]
+    /// The names of the end effectors, the beginnings of the names of their functions, and the coordinates that move each; none where there is
+    /// one without a name.
+    #[getter]
+    fn tips(&self) -> Vec<(String, String, Vec<usize>)> {
+        let arm = &self.robot.model.manipulator;
+        arm.tips.iter().map(|tip| (tip.name.clone(), tip.prefix(), arm.coordinates_of(tip.joint.index()))).collect()
+    }
+
+    /// All postures at a pose or at its position and rotation; at arrays of them lists of these. `tip`: a named end effector.
+    #[pyo3(signature = (pose, redundancy, position, rotation, threads, tip))]
+    #[allow(clippy::too_many_arguments)]
     fn inverse_kinematics<'py>(
         &self,
         py: Python<'py>,
@@ -216,18 +264,24 @@ impl Arm {
         position: Option<Bound<'py, PyAny>>,
         rotation: Option<Bound<'py, PyAny>>,
         threads: i64,
+        tip: Option<&str>,
     ) -> PyResult<Bound<'py, PyAny>> {
-        guarded(py, || postures::solved(py, &self.robot, Target { pose, position, rotation }, redundancy, threads))
+        guarded(py, || postures::solved(py, self.robot.end(tip)?, Target { pose, position, rotation }, redundancy, threads))
     }
 
     /// What is given to it beside a pose: the name of a joint, or "swivel". Without inverse kinematics there is nothing to give.
-    fn redundancy(&self, py: Python<'_>) -> PyResult<Option<&str>> {
-        guarded(py, || Ok(self.robot.redundancy(py).ok().flatten()))
+    fn redundancy(&self, py: Python<'_>, tip: Option<&str>) -> PyResult<Option<&str>> {
+        guarded(py, || Ok(self.robot.end(tip).and_then(|end| end.redundancy(py)).ok().flatten()))
     }
 
     /// The redundancy of a posture, of an array of postures an array.
-    fn inverse_kinematics_redundancy<'py>(&self, py: Python<'py>, q: Bound<'py, PyAny>) -> PyResult<Bound<'py, PyAny>> {
-        guarded(py, || postures::redundancy_of(py, &self.robot, &q))
+    fn inverse_kinematics_redundancy<'py>(
+        &self,
+        py: Python<'py>,
+        q: Bound<'py, PyAny>,
+        tip: Option<&str>,
+    ) -> PyResult<Bound<'py, PyAny>> {
+        guarded(py, || postures::redundancy_of(py, self.robot.end(tip)?, &q))
     }
 
     /// What the checker finds of a module, or of the functions as they are executed here: the first fault, and of each function its name, numbers of

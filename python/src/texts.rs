@@ -27,8 +27,8 @@ pub(crate) fn shown(
     if digits.is_some_and(|digits| !(1..=17).contains(&digits)) {
         return Err("digits: 1 to 17".to_owned());
     }
-    if quantity == "inverse_kinematics" && format == "text" {
-        return Ok(shown::steps_of_inverse_kinematics(model));
+    if let Some(steps) = shown::steps_of(model, quantity).filter(|_| format == "text") {
+        return Ok(steps);
     }
     let items = shown::items(model, &[quantity.to_owned()])?;
     let reading = if symbolic { Reading::Symbolic } else { Reading::Nominal };

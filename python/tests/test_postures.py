@@ -33,6 +33,26 @@ def solvable():
         yield robot
 
 
+def test_each_end_effector_has_postures():
+    robot = armgen.load(ROOT / "tests/data/trees/two_hands.yaml")
+    q = np.array([0.3, -0.2, 0.5, 0.7, -0.4, 0.1, 0.9])
+    for hand, own in [("left_hand", [0, 1, 2, 3]), ("right_hand", [0, 4, 5, 6])]:
+        if hand == "right_hand":
+            robot = armgen.loads(robot.text.replace("task: [x, y]", "task: [x, y, z]"))
+        assert getattr(robot, f"{hand}_coordinates") == tuple(own)
+        frame, find = getattr(robot, f"{hand}_direct_kinematics"), getattr(robot, f"{hand}_inverse_kinematics")
+        given = getattr(robot, f"{hand}_inverse_kinematics_redundancy")(q[own])
+        found = find(frame(q), given)
+        assert found.verdict == "complete" and found.nearest_to(q[own]) == pytest.approx(q[own], abs=1e-9)
+        for posture in found:
+            whole = np.array(q)
+            whole[own] = posture
+            assert frame(whole)[:3, 3] == pytest.approx(frame(q)[:3, 3], abs=1e-12)
+        with pytest.raises(ValueError, match=f"`{hand}_inverse_kinematics`"):
+            robot.inverse_kinematics(frame(q))
+        assert robot.show(f"{hand}_inverse_kinematics").startswith(f"{hand}_inverse_kinematics: position of three joints")
+
+
 def configuration(random, robot):
     return np.where(robot.revolute, random.uniform(-3.1, 3.1, robot.dof), random.uniform(-0.5, 0.5, robot.dof))
 

@@ -31,6 +31,15 @@ fn arms_with_numbers_of_real_files_have_an_answer() {
     answered(0..2, (2, 2), Before::Mobile);
 }
 
+/// A module of a text that equals its equations.
+fn verified(text: String, scalar: Scalar) {
+    let source = Source::new("robot.yaml", text);
+    let generated = armgen_codegen::generate(&source, &Options { scalar, ..Options::default() }).0.expect("a module");
+    let claims = Claims::from_numbers(&generated.constants).expect("short formulas");
+    let report = verify_with(&source, &generated.module, claims, Effort { points: 2, exact_points: 1, seed: 1 });
+    assert!(report.passed(), "{}\n{}", report.first_fault().unwrap_or_default(), source.text());
+}
+
 /// A link whose origin lies next to the axis before it, and not on it: its torque comes from a lever arm of micrometres, whose digits no sum with
 /// a longer one may take.
 #[test]
@@ -44,11 +53,24 @@ fn short_lever_arms_keep_their_digits() {
              - {{name: elbow, type: revolute, origin: {{xyz: [-3.0e-06, {dust}, {lever}], rpy: [pi/2, 3.141593, -pi/3]}}, axis: [0, 0, 1],\n     \
                 link: {{mass: 8, com: [0, -0.47, 0], inertia: {{xx: 0.1, yy: 0.1, zz: 0.1}}}}}}\n"
         );
-        let source = Source::new("robot.yaml", text);
-        let generated = armgen_codegen::generate(&source, &Options::default()).0.expect("a module");
-        let claims = Claims::from_numbers(&generated.constants).expect("short formulas");
-        let report = verify_with(&source, &generated.module, claims, Effort { points: 2, exact_points: 1, seed: 1 });
-        assert!(report.passed(), "{}\n{}", report.first_fault().unwrap_or_default(), source.text());
+        verified(text, Scalar::F64);
+    }
+}
+
+/// A centre of mass beside its joint axis by dust: where the mixed second moment would vanish lies kilometres away, and no digit comes back.
+#[test]
+fn dust_in_a_center_of_mass_moves_no_origin_away() {
+    for dust in ["2.84822e-08", "-1e-09", "3e-07", "1e-16"] {
+        let text = format!(
+            "name: dusty\nconvention: modified\ngravity: [0, 0, -9.81]\njoints:\n  \
+             - {{name: yaw, type: revolute, a: 0.08, alpha: 0, d: -0.373, theta: 0,\n     \
+                link: {{mass: 2.5, com: [{dust}, -0.5, 0.0033], inertia: {{xx: 0.119, yy: 0.108, zz: 0.109}}}}}}\n  \
+             - {{name: shoulder, type: revolute, a: 0, alpha: -pi/3, d: 3e-05, theta: -2.479,\n     \
+                link: {{mass: 1, com: [0.58, 0, 0], inertia: {{xx: 0.1, yy: 0.11, zz: 0.11, xy: -0.006, xz: 0.0017, yz: -0.009}}}}}}\n  \
+             - {{name: elbow, type: revolute, a: 0.4178, alpha: pi/2, d: -1e-09, theta: -1.653,\n     \
+                link: {{mass: 1, com: [-0.31, -0.031, 0], inertia: {{xx: 0.1, yy: 0.11, zz: 0.11}}}}}}\n"
+        );
+        verified(text, Scalar::F32);
     }
 }
 

@@ -4,7 +4,7 @@
 //! The search tries the other ways fork by fork, counts the operations of each in a copy of the pool that holds fingerprints only, and
 //! keeps what is cheaper, until no single change helps. It is bounded by counts, never by time, and takes the forks in a fixed order.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 use crate::pass::{Pass, Passes};
 
@@ -58,6 +58,8 @@ pub struct Plan {
     ways: BTreeMap<Fork, usize>,
     /// How many ways each fork met so far has.
     forks: BTreeMap<Fork, usize>,
+    /// The ways that an exact pool refused.
+    refused: BTreeSet<(Fork, usize)>,
     without: Passes,
     start: Start,
     /// In tests: ways drawn by this seed where none is chosen.
@@ -99,7 +101,22 @@ impl Plan {
     /// The chosen way at a fork with this number of ways.
     fn current(&self, fork: Fork, ways: usize) -> usize {
         let first = if fork.0 == Pass::OriginAlongAxis { self.start.origin.min(ways - 1) } else { 0 };
-        self.ways.get(&fork).copied().filter(|&way| way < ways).unwrap_or(first)
+        let chosen = self.ways.get(&fork).copied().filter(|&way| way < ways).unwrap_or(first);
+        if self.refused.contains(&(fork, chosen)) {
+            0
+        } else {
+            chosen
+        }
+    }
+
+    /// Takes the plain way from now on wherever this one would be chosen: its numbers, known in an exact pool alone, are unsuitable.
+    pub fn refuse(&mut self, pass: Pass, place: Place, way: usize) {
+        self.refused.insert(((pass, place), way));
+    }
+
+    /// How many ways were refused.
+    pub fn refusals(&self) -> usize {
+        self.refused.len()
     }
 
     /// Which of `ways` to take at a fork.
@@ -134,6 +151,9 @@ impl Plan {
             for (fork, ways) in forks {
                 let current = self.current(fork, ways);
                 for way in (0..ways).filter(|&way| way != current) {
+                    if self.refused.contains(&(fork, way)) {
+                        continue;
+                    }
                     if *effort == 0 {
                         return (best, self);
                     }

@@ -579,19 +579,26 @@ impl Quantity {
         };
         without.iter().for_each(|&pass| plan.disable(pass));
         passes::disable_unsuitable(&pool, &arm, &mut plan);
-        if effort > 0 {
-            let (fingerprints_only, own, mut nodes) = (pool.fingerprints_only(), blank.fingerprints_only(), 0);
-            plan = plan.search_from(starts, effort, &mut |plan| {
-                let mut pool = fingerprints_only.clone();
-                pool.reserve(nodes);
-                let (pool, entries) = derive(pool, own.clone(), plan);
-                nodes = pool.len();
-                let (entries, _) = pool.with_gravity(&entries);
-                let pairs = pool.angles(&entries).len();
-                (pool.operations(&entries, DIVISION_COST) + SINE_COSINE_COST * pairs, pool.len())
-            });
-        }
-        let (pool, entries) = derive(pool, blank, &mut plan);
+        let (fingerprints_only, own, mut nodes) = (pool.fingerprints_only(), blank.fingerprints_only(), 0);
+        let (pool, entries) = loop {
+            if effort > 0 {
+                plan = plan.search_from(starts, effort, &mut |plan| {
+                    let mut pool = fingerprints_only.clone();
+                    pool.reserve(nodes);
+                    let (pool, entries) = derive(pool, own.clone(), plan);
+                    nodes = pool.len();
+                    let (entries, _) = pool.with_gravity(&entries);
+                    let pairs = pool.angles(&entries).len();
+                    (pool.operations(&entries, DIVISION_COST) + SINE_COSINE_COST * pairs, pool.len())
+                });
+            }
+            let refused = plan.refusals();
+            let derived = derive(pool.clone(), blank.clone(), &mut plan);
+            // Each round refuses at least one more way, and without a search the plain ways remain.
+            if plan.refusals() == refused || effort == 0 {
+                break derived;
+            }
+        };
         let grouped = rewriting == RewriteScope::Dynamics && plan.has(Pass::Grouping);
         let parallel = arm.parallel_coordinates();
         Derivation { pool, entries, parallel, method: if grouped { OVER_GROUPED_BODIES } else { OVER_THE_LINKS } }

@@ -70,7 +70,11 @@ pub(super) fn lay(joints: &mut [Joint], ends: &[(usize, &Pose)], anywhere: bool,
 
 /// |xyz| at the nominal values of all names.
 fn size(frame: &Placement, parameters: &[Parameter]) -> f64 {
-    frame.translation.iter().map(|x| value(x, parameters).powi(2)).sum::<f64>().sqrt()
+    length(frame.translation.each_ref().map(|x| value(x, parameters)))
+}
+
+fn length(vector: [f64; 3]) -> f64 {
+    vector.iter().map(|x| x * x).sum::<f64>().sqrt()
 }
 
 fn value(polynomial: &Polynomial, parameters: &[Parameter]) -> f64 {
@@ -141,7 +145,6 @@ fn frame(
         foot(p, &v, &n).unwrap_or_else(|| of_before.clone())
     };
     // How far 0 lies from the parent's axis, and a point of this axis for each metre of its own.
-    let length = |vector: [f64; 3]| vector.iter().map(|x| x * x).sum::<f64>().sqrt();
     let (distance, slope) = before.as_ref().map_or((0.0, 0.0), |frame| {
         let z = column(frame, 2);
         let lever = cross_polynomial(&frame.translation, &z).each_ref().map(|x| value(x, parameters));

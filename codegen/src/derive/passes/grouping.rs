@@ -9,22 +9,53 @@
 //!
 //! The origin of a joint frame is free along the joint axis: at the foot of either common normal, or where Sxz or Syz vanishes.
 //! For frames it can also be next to the end effector.
+//!
+//! Both choices divide by entries that may be dust of an exporter. A shift of kilometres is exact, and no floating-point number that goes through
+//! it keeps its digits: ways far larger than the arm are refused.
 
 use super::super::arm::{Arm, Body};
 use super::super::plan::{Place, Plan};
 use crate::pass::Pass;
 use crate::ring::{ExprId, Pool};
 
+/// The mass (kg) and the extent (m) of an arm.
+struct Size {
+    mass: f64,
+    length: f64,
+}
+
+impl Size {
+    /// The sums of its masses, and of the coordinates of its origins and the radii of gyration of its bodies. `None` in a pool without values.
+    fn of(pool: &Pool, arm: &Arm) -> Option<Size> {
+        let value = |entry: ExprId| pool.as_constant(entry).map_or(0.0, |number| number.to_f64().abs());
+        let gyration = |body: &Body| {
+            let [xx, _, yy, _, _, zz] = body.second.map(value);
+            Some(((xx + yy + zz) / value(body.mass)).sqrt()).filter(|radius| radius.is_finite())
+        };
+        pool.knows_values().then(|| Size {
+            mass: arm.joints.iter().map(|joint| value(joint.body.mass)).sum(),
+            length: arm.joints.iter().flat_map(|joint| joint.origin).chain(arm.tool.origin).map(value).sum::<f64>()
+                + arm.joints.iter().filter_map(|joint| gyration(&joint.body)).sum::<f64>(),
+        })
+    }
+
+    /// Whether a constant in kg^mass m^length is beyond the arm's own.
+    fn is_below(&self, pool: &Pool, constant: ExprId, mass: i32, length: i32) -> bool {
+        pool.as_constant(constant).is_some_and(|number| number.to_f64().abs() > self.mass.powi(mass) * self.length.powi(length))
+    }
+}
+
 /// Regroups the parameters of all links towards the base.
 pub(super) fn group(pool: &mut Pool, arm: &mut Arm, plan: &mut Plan) {
+    let size = Size::of(pool, arm);
     for i in (0..arm.dof()).rev() {
-        choose_origin(pool, arm, plan, i, false);
+        choose_origin(pool, arm, plan, size.as_ref(), i, false);
         if !plan.has(Pass::Grouping) {
             continue;
         }
         if arm.joints[i].is_revolute() {
             for (k, unit) in [unit_mass(), unit_moment(), unit_second_moment()].iter().enumerate() {
-                regroup(pool, arm, plan, i, k, unit);
+                regroup(pool, arm, plan, size.as_ref(), i, k, unit);
             }
         } else {
             arm.move_second_moments_to_parent(pool, i);
@@ -34,8 +65,9 @@ pub(super) fn group(pool: &mut Pool, arm: &mut Arm, plan: &mut Plan) {
 
 /// Chooses the origins alone, for functions that the end effector may enter.
 pub(super) fn choose_origins(pool: &mut Pool, arm: &mut Arm, plan: &mut Plan) {
+    let size = Size::of(pool, arm);
     for i in (0..arm.dof()).rev() {
-        choose_origin(pool, arm, plan, i, true);
+        choose_origin(pool, arm, plan, size.as_ref(), i, true);
     }
 }
 
@@ -60,7 +92,7 @@ fn entries(body: &Body) -> Vec<ExprId> {
 }
 
 /// Moves a part of a body that joint i does not feel to the parent.
-fn regroup(pool: &mut Pool, arm: &mut Arm, plan: &mut Plan, i: usize, kind: usize, unit: &Body) {
+fn regroup(pool: &mut Pool, arm: &mut Arm, plan: &mut Plan, size: Option<&Size>, i: usize, kind: usize, unit: &Body) {
     let joint = arm.joints[i];
     let own = [joint.body.mass, joint.body.first[2], joint.body.second[5]][kind];
     let mut amount = own;
@@ -77,7 +109,12 @@ fn regroup(pool: &mut Pool, arm: &mut Arm, plan: &mut Plan, i: usize, kind: usiz
         if way > 0 {
             let (entry, gain) = there[way - 1];
             let inverse = pool.reciprocal(gain);
-            amount = -pool.mul(entry, inverse);
+            let lacking = -pool.mul(entry, inverse);
+            if size.is_some_and(|size| size.is_below(pool, lacking, 1, kind as i32)) {
+                plan.refuse(Pass::GroupingAmount, Place::Parameter(i, kind), way);
+            } else {
+                amount = lacking;
+            }
         }
     }
     let scaled = |pool: &mut Pool, body: &Body, by: ExprId| Body {
@@ -94,7 +131,7 @@ fn regroup(pool: &mut Pool, arm: &mut Arm, plan: &mut Plan, i: usize, kind: usiz
 }
 
 /// Moves the origin of joint frame i along its axis, to the foot of the end effector too where that counts.
-fn choose_origin(pool: &mut Pool, arm: &mut Arm, plan: &mut Plan, i: usize, end_effector_counts: bool) {
+fn choose_origin(pool: &mut Pool, arm: &mut Arm, plan: &mut Plan, size: Option<&Size>, i: usize, end_effector_counts: bool) {
     if !plan.has(Pass::OriginAlongAxis) {
         return;
     }
@@ -128,6 +165,11 @@ fn choose_origin(pool: &mut Pool, arm: &mut Arm, plan: &mut Plan, i: usize, end_
     }
     let way = plan.way(Pass::OriginAlongAxis, Place::Joint(i), ways.len() + 1);
     if way > 0 {
-        arm.slide(pool, i, ways[way - 1]);
+        let shift = ways[way - 1];
+        if size.is_some_and(|size| size.is_below(pool, shift, 0, 1)) {
+            plan.refuse(Pass::OriginAlongAxis, Place::Joint(i), way);
+        } else {
+            arm.slide(pool, i, shift);
+        }
     }
 }
