@@ -555,6 +555,8 @@ impl<'a> Estimate<'a> {
     /// corrections with sigmas, and the covariance of the active columns with friction scaled back.
     pub fn gains(&mut self, held: &[bool]) -> (Vec<f64>, Vec<f64>, DMatrix<f64>, f64) {
         let n = self.arm.dof();
+        // From the corrections at hand.
+        let mut reciprocal: Vec<f64> = (0..n).map(|j| if held[j] { 1.0 } else { 1.0 / self.corrections[j] }).collect();
         self.corrections = vec![1.0; n];
         let (mut equations, known) = self.equations(None);
         let fixed: Vec<f64> = (0..equations.b.len()).map(equations.product(&self.fixed)).collect();
@@ -564,9 +566,11 @@ impl<'a> Estimate<'a> {
         let mut active = self.active.clone();
         active.extend((0..n).filter(|&j| !held[j]).map(|j| self.place(Column::Gain(j))));
         let plain = equations.clone();
-        let mut reciprocal = vec![1.0; n];
-        let gram_x: DVector<f64> = DVector::from_fn(self.active.len(), |k, _| self.x[self.active[k]]);
-        let mut x = gram_x;
+        let start = |&place: &usize| match self.columns[place] {
+            Column::Friction(_, j, _) => self.x[place] * reciprocal[j],
+            _ => self.x[place],
+        };
+        let mut x = DVector::from_iterator(self.active.len(), self.active.iter().map(start));
         let mut inverse = DMatrix::zeros(0, 0);
         let mut residuals = vec![0.0; equations.b.len()];
         let mut spreads = self.spreads.clone();

@@ -373,21 +373,25 @@ pub fn scores(equations: &Equations, active: &[usize], residuals: &[f64], weight
     scores
 }
 
-/// The time after which the autocorrelation of the residuals stays below 1/e, the longest of the joints, s.
+/// Samples after which no residuals are compared: what is correlated over a longer time counts as correlated so long.
+const LONGEST_LAG: usize = 200;
+
+/// The time after which the autocorrelation of the residuals stays below 1/e, the longest of the joints, s. Residuals of different logs have no
+/// time between them.
 fn correlation_time(equations: &Equations, residuals: &[f64], weights: &[f64], joints: usize) -> f64 {
     (0..joints)
         .map(|j| {
-            let of: Vec<(f64, f64)> = (0..residuals.len())
+            let of: Vec<(usize, f64, f64)> = (0..residuals.len())
                 .filter(|&k| equations.rows[k].joint == j && weights[k] > 0.0)
-                .map(|k| (equations.rows[k].time, residuals[k]))
+                .map(|k| (equations.rows[k].log, equations.rows[k].time, residuals[k]))
                 .collect();
-            let power: f64 = of.iter().map(|(_, r)| r * r).sum();
-            let lags = (1..of.len().min(200)).find(|&lag| {
-                let sum: f64 = of.windows(lag + 1).map(|w| w[0].1 * w[lag].1).sum();
-                sum < power / std::f64::consts::E
-            });
-            let step = crate::signal::median(&of.windows(2).map(|w| w[1].0 - w[0].0).collect::<Vec<_>>());
-            lags.unwrap_or(1) as f64 * step.max(0.0)
+            let power: f64 = of.iter().map(|(.., r)| r * r).sum();
+            let pairs = |lag: usize| (lag..of.len()).map(move |k| (k - lag, k)).filter(|&(a, b)| of[a].0 == of[b].0);
+            let last = LONGEST_LAG.min(of.len());
+            let is_below = |lag: &usize| pairs(*lag).map(|(a, b)| of[a].2 * of[b].2).sum::<f64>() < power / std::f64::consts::E;
+            let lag = (1..last).find(is_below).unwrap_or(last);
+            let step = crate::signal::median(&pairs(1).map(|(a, b)| of[b].1 - of[a].1).collect::<Vec<_>>());
+            lag as f64 * step.max(0.0)
         })
         .fold(0.0, f64::max)
 }
@@ -431,7 +435,45 @@ pub fn student(freedom: f64, outside: f64) -> f64 {
 
 #[cfg(test)]
 mod tests {
-    use super::student;
+    use super::{block_length, student, Equations, Row, LONGEST_LAG};
+
+    /// Residuals of logs have the same length of a block in every order of the logs, and those of one sign throughout have the longest.
+    #[test]
+    fn blocks_are_as_long_in_every_order_of_logs() {
+        let mut state = 1u64;
+        let mut random = || {
+            state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+            (state >> 40) as f64 / f64::from(1 << 24) - 0.5
+        };
+        let length = |logs: &[(usize, Vec<f64>)]| {
+            let row = |log: usize, k: usize| Row { joint: 0, log, time: 0.1 * k as f64, counts: true };
+            let rows: Vec<Row> = logs.iter().flat_map(|(log, of)| (0..of.len()).map(|k| row(*log, k))).collect();
+            let residuals: Vec<f64> = logs.iter().flat_map(|(_, of)| of.iter().copied()).collect();
+            let count = rows.len();
+            block_length(&Equations::dense(1, vec![0.0; count], residuals.clone(), rows), &residuals, &vec![1.0; count], 1)
+        };
+        for _ in 0..20 {
+            // What is left wanders.
+            let mut walk = |count: usize| {
+                let mut at = 0.0;
+                (0..count)
+                    .map(|_| {
+                        at += random();
+                        at
+                    })
+                    .collect::<Vec<f64>>()
+            };
+            let mut logs: Vec<(usize, Vec<f64>)> = (0..3).map(|log| (log, walk(250 + 100 * log))).collect();
+            let first = length(&logs);
+            for k in [2, 1, 2, 1] {
+                logs.swap(0, k);
+                assert_eq!(length(&logs), first);
+            }
+        }
+        let constant = |sign: f64| (0..1000).map(|_| sign + 0.1 * random()).collect::<Vec<f64>>();
+        let longest = 5.0 * 0.1 * LONGEST_LAG as f64;
+        assert!((length(&[1.0, -1.0].map(constant).into_iter().enumerate().collect::<Vec<_>>()) - longest).abs() < 1e-9);
+    }
 
     /// Quantiles 0.99865 of Student's t, from the closed forms for 1 and 2 degrees of freedom and the normal limit.
     #[test]

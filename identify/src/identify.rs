@@ -126,6 +126,12 @@ pub fn identify(arm: &Arm, inputs: &[Input], options: &Options, findings: &mut F
     if suspect::torques(&estimate, &inputs[0].log, &torques.gains, findings) {
         return None;
     }
+    let with_gains = torques.is_of_currents && options.gains == Gains::Identify;
+    if with_gains {
+        // Beside torques that are off by a part, delays and terms of friction would be those of what is left.
+        let simple = first_terms(&estimate, options);
+        drive_gains(&mut estimate, &simple, &torques.gains);
+    }
     match &options.delay {
         Some(given) => {
             estimate.delays = (0..arm.dof()).map(|j| given.get(j).or(given.first()).copied().unwrap_or(0.0)).collect();
@@ -141,7 +147,6 @@ pub fn identify(arm: &Arm, inputs: &[Input], options: &Options, findings: &mut F
     if !findings.iter().any(|of| matches!(of.code, Code::SignSuspected | Code::JointOrder)) {
         suspect::again(&estimate, &inputs[0].log, &torques.gains, findings);
     }
-    let with_gains = torques.is_of_currents && options.gains == Gains::Identify;
     let of_gains = with_gains.then(|| drive_gains(&mut estimate, &terms, &torques.gains));
     let (equations, solution, covariance) = estimate.finish();
     few_blocks(&covariance, &inputs[0].log.name, findings);
@@ -328,11 +333,16 @@ fn enough_rows(estimate: &Estimate<'_>, log: &str, findings: &mut Findings) -> b
     moving >= 5 * unknowns
 }
 
+/// The terms of friction of each joint that are there before any is chosen.
+fn first_terms(estimate: &Estimate<'_>, options: &Options) -> Vec<Vec<Friction>> {
+    vec![options.friction.clone().unwrap_or_else(|| SIMPLE.to_vec()); estimate.arm.dof()]
+}
+
 /// The terms of friction of each joint: those of the options, or those that cross-validation chooses. The estimate has them.
 fn chosen_terms(estimate: &mut Estimate<'_>, options: &Options) -> Vec<Vec<Friction>> {
     let n = estimate.arm.dof();
     let is_free = options.friction.is_none();
-    let mut terms: Vec<Vec<Friction>> = vec![options.friction.clone().unwrap_or_else(|| SIMPLE.to_vec()); n];
+    let mut terms = first_terms(estimate, options);
     estimate.fit_terms(&terms);
     for round in 0..3 {
         estimate.renew_sizes();
@@ -392,7 +402,7 @@ fn settled_delays(
     }
     if *terms != *before {
         without_insignificant(estimate, terms);
-        errors = estimate.settle(false);
+        errors = estimate.settle(true);
     }
     for (joint, delay) in estimate.arm.joints.iter().zip(&estimate.delays).filter(|(_, delay)| Estimate::is_last_delay(**delay)) {
         let text = format!("the delay of joint `{}`, {:.1} ms, is at the end of its range", joint.name, 1e3 * delay);
