@@ -94,7 +94,8 @@ pub(super) fn backwards<T: RealField + Copy>(
         if !(slope < T::zero()) {
             return None;
         }
-        high -= width / slope;
+        // Where m is nearly zero the width is steep, and its rounding larger than any of X0: a step passes that, too.
+        high = (high - width / slope).min(high * (T::one() - tiny));
         if high < low {
             return None;
         }
@@ -196,5 +197,32 @@ impl<T: RealField + Copy> Interval<T> {
 
     pub(super) fn size(&self) -> T {
         self.high.0.abs().max(self.low.0.abs())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// c X0 + m X2 <= most with m close to zero: the width of X2 rounds by far more than X0 does.
+    #[test]
+    fn a_row_nearly_without_inertia_leaves_an_interval() {
+        let mut state = 3u64;
+        let mut random = move || {
+            state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+            (state >> 11) as f64 / (1u64 << 53) as f64
+        };
+        for _ in 0..1000 {
+            let (c, m, most) = (0.1 + random(), 1e-8 * random(), 5.0 + random());
+            let found = backwards(0.0, 2.0 * most / c, |x0| {
+                let mut found = Interval::new();
+                found.lower(&HalfPlane { x0: c, x2: m, most }, x0);
+                found.lower(&HalfPlane { x0: 0.0, x2: 1.0, most: 30.0 }, x0);
+                found.raise(&HalfPlane { x0: 1.0, x2: -1.0, most: 1.0 }, x0);
+                found
+            });
+            let [(low, _), (high, _)] = found.expect("an interval");
+            assert!(low == 0.0 && (high - (most / c).min(31.0)).abs() < 1e-5, "{low} {high}");
+        }
     }
 }
