@@ -201,7 +201,10 @@ fn sums_about_parallel_axes_are_one_angle() {
     );
     let turned = turned.replacen("offset: 0.1", "offset: -0.1", 1);
     assert_ne!(turned, FINGER);
-    let (source, finger) = generated(FINGER);
+    let of = |text: &str| {
+        chosen(text, Selection::named(["direct_kinematics", "inertia_matrix", "inverse_dynamics"]).expect("functions"))
+    };
+    let (source, finger) = of(FINGER);
     let passes = |source: &Source, generated: &Generated, text: &str| judged(source, generated, Language::Rust, text).passed();
     assert!(passes(&source, &finger, &finger.module));
     assert!(finger.module.contains("2.19 * q[1] + 0.1"), "{}", finger.module);
@@ -217,7 +220,7 @@ fn sums_about_parallel_axes_are_one_angle() {
         assert_ne!(wrong, finger.module, "{of}");
         assert!(!passes(&source, &finger, &wrong), "{by}");
     }
-    let (source, other) = generated(&turned);
+    let (source, other) = of(&turned);
     assert!(passes(&source, &other, &other.module));
 }
 
