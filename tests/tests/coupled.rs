@@ -101,6 +101,7 @@ pub(crate) fn judged(source: &Source, generated: &Generated, language: Language,
 }
 
 #[test]
+#[ignore = "wide"]
 fn the_checker_proves_coupled_arms_in_every_language() {
     for text in [PARALLELOGRAM, GRIPPER, SCREW] {
         let (source, generated) = generated(text);
@@ -269,6 +270,7 @@ fn closed_loops_are_proved() {
 
 /// Factors with another digit, without a sign or with another constant: the argument of the sine is another one.
 #[test]
+#[ignore = "wide"]
 fn a_module_of_another_computed_angle_is_refused() {
     const FUNCTIONS: [&str; 4] = ["end_direct_kinematics", "inertia_matrix", "gravity", "joint_variables"];
     let of = |text: &str| chosen(text, Selection::named(FUNCTIONS).expect("functions"));
