@@ -101,6 +101,7 @@ pub(crate) fn judged(source: &Source, generated: &Generated, language: Language,
 }
 
 #[test]
+#[ignore = "wide"]
 fn the_checker_proves_coupled_arms_in_every_language() {
     for text in [PARALLELOGRAM, GRIPPER, SCREW] {
         let (source, generated) = generated(text);
@@ -201,7 +202,10 @@ fn sums_about_parallel_axes_are_one_angle() {
     );
     let turned = turned.replacen("offset: 0.1", "offset: -0.1", 1);
     assert_ne!(turned, FINGER);
-    let (source, finger) = generated(FINGER);
+    let of = |text: &str| {
+        chosen(text, Selection::named(["direct_kinematics", "inertia_matrix", "inverse_dynamics"]).expect("functions"))
+    };
+    let (source, finger) = of(FINGER);
     let passes = |source: &Source, generated: &Generated, text: &str| judged(source, generated, Language::Rust, text).passed();
     assert!(passes(&source, &finger, &finger.module));
     assert!(finger.module.contains("2.19 * q[1] + 0.1"), "{}", finger.module);
@@ -217,7 +221,7 @@ fn sums_about_parallel_axes_are_one_angle() {
         assert_ne!(wrong, finger.module, "{of}");
         assert!(!passes(&source, &finger, &wrong), "{by}");
     }
-    let (source, other) = generated(&turned);
+    let (source, other) = of(&turned);
     assert!(passes(&source, &other, &other.module));
 }
 
@@ -266,6 +270,7 @@ fn closed_loops_are_proved() {
 
 /// Factors with another digit, without a sign or with another constant: the argument of the sine is another one.
 #[test]
+#[ignore = "wide"]
 fn a_module_of_another_computed_angle_is_refused() {
     const FUNCTIONS: [&str; 4] = ["end_direct_kinematics", "inertia_matrix", "gravity", "joint_variables"];
     let of = |text: &str| chosen(text, Selection::named(FUNCTIONS).expect("functions"));

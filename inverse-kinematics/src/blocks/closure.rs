@@ -110,7 +110,7 @@ impl<const N: usize> Loop<'_, N> {
             let (x, pivot) = solve(&equations);
             if residual < best.residual {
                 // Only a small pivot lets the Jacobian be nearly singular: the inverse is worth its time there.
-                let double = !(pivot > 1e-3 * self.length) && self.nearly_double(&equations, units);
+                let double = !(pivot > 1e-3 * self.length) && self.nearly_double(&equations, &joints, units);
                 best = Closed { joints, residual, double };
             }
             let precise = residual <= 16.0 * UNIT_ROUNDOFF * self.length;
@@ -151,24 +151,24 @@ impl<const N: usize> Loop<'_, N> {
 
     /// Whether |J⁻¹|² K `units` u >= 1/2 with lengths in units of the arm's length: what Newton and Kantorovich's theorem asks for to hold one
     /// solution apart from another after a change of the pose by its rounding. K, the bound of second derivatives, is taken as 4:
-    /// lever arms of two lengths of the arm.
-    fn nearly_double(&self, equations: &Equations<N>, units: Real) -> bool {
+    /// lever arms of two lengths of the arm. Slides that become parallel go to infinity and come back from the other side: extended to r lengths,
+    /// |J⁻¹| has a factor r² from that pole, which is no second solution.
+    fn nearly_double(&self, equations: &Equations<N>, joints: &[[Real; 2]; N], units: Real) -> bool {
         const SECOND_DERIVATIVES: Real = 4.0;
+        let extended = if self.slides_far() { self.extended(joints) } else { 1.0 };
+        let pole = extended * extended;
         let mut square = 0.0;
-        let mut inverse = [[0.0; N]; N];
-        for (k, column) in inverse.iter_mut().enumerate() {
+        for k in 0..N {
             let mut unit = *equations;
             unit.right = [0.0; N];
             unit.right[k] = self.length;
-            let (solved, _) = solve(&unit);
-            *column = solved;
-            for (x, prismatic) in column.iter_mut().zip(self.prismatic) {
-                *x = if prismatic { *x / self.length } else { *x };
-                square += *x * *x;
+            let (column, _) = solve(&unit);
+            for (x, prismatic) in column.iter().zip(self.prismatic) {
+                let x = if prismatic { *x / self.length } else { *x };
+                square += x * x;
             }
         }
-        let is_double = |square: Real| !(square * SECOND_DERIVATIVES * units * UNIT_ROUNDOFF < 0.5);
-        is_double(square) && (!self.slides_far() || is_double(about_best_point(&inverse)))
+        !(square / (pole * pole) * SECOND_DERIVATIVES * units * UNIT_ROUNDOFF < 0.5)
     }
 
     /// Whether slides may take parts of the arm far from where the loop is closed.
@@ -216,7 +216,7 @@ impl<const N: usize> Loop<'_, N> {
                 damping *= 4.0;
             }
         }
-        Closed { joints, residual, double: self.nearly_double(&here, 1024.0) }
+        Closed { joints, residual, double: self.nearly_double(&here, &joints, 1024.0) }
     }
 }
 
@@ -387,40 +387,6 @@ fn solve<const N: usize>(equations: &Equations<N>) -> ([Real; N], Real) {
         x[k] = if rows[k][k] != 0.0 { sum / rows[k][k] } else { 0.0 };
     }
     (x, smallest)
-}
-
-/// The sum of the squares of an inverse Jacobian's entries, by columns, with turns about the point that makes it least. About a point far away a turn
-/// is mostly a displacement.
-fn about_best_point<const N: usize>(columns: &[[Real; N]; N]) -> Real {
-    let mut normal = Equations { rows: [[0.0; 3]; 3], right: [0.0; 3] };
-    let joint = |i: usize, first: usize| {
-        let mut v = [0.0; 3];
-        for (v, column) in v.iter_mut().zip(columns.iter().skip(first)) {
-            *v = column.get(i).copied().unwrap_or(0.0);
-        }
-        v
-    };
-    // |turn + along × d|² of all joints is least.
-    for i in 0..N {
-        let (along, turn) = (joint(i, 0), joint(i, 3));
-        let moment = cross(turn, along);
-        for j in 0..3 {
-            normal.rows[j][j] += dot(along, along);
-            for k in 0..3 {
-                normal.rows[j][k] -= along[j] * along[k];
-            }
-            normal.right[j] -= moment[j];
-        }
-    }
-    let (d, _) = solve(&normal);
-    let mut sum = 0.0;
-    for i in 0..N {
-        let (along, turn) = (joint(i, 0), joint(i, 3));
-        let moved = cross(along, d);
-        let rest = [turn[0] + moved[0], turn[1] + moved[1], turn[2] + moved[2]];
-        sum += dot(along, along) + dot(rest, rest);
-    }
-    sum
 }
 
 /// The equations of least squares, (K'K) x = K'e for the rows (K, e).
