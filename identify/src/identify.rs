@@ -402,7 +402,7 @@ fn settled_delays(
     }
     if *terms != *before {
         without_insignificant(estimate, terms);
-        errors = estimate.settle(false);
+        errors = estimate.settle(true);
     }
     for (joint, delay) in estimate.arm.joints.iter().zip(&estimate.delays).filter(|(_, delay)| Estimate::is_last_delay(**delay)) {
         let text = format!("the delay of joint `{}`, {:.1} ms, is at the end of its range", joint.name, 1e3 * delay);
