@@ -82,6 +82,15 @@ fn delays_of_logs_without_noise_are_exact() {
     }
 }
 
+/// A little cubic friction is seen only when delays are nearly right, and hides the rest of them until then.
+#[test]
+fn delays_are_exact_beside_friction_that_is_found_late() {
+    for cubic in ["0.01", "-0.01", "0.02", "-0.02", "0.05", "-0.05"] {
+        let text = ELBOW.replace("offset: 0.2, load: 0.04", &format!("offset: 0.2, load: 0.04, cubic: {cubic}"));
+        check(&errors(&text, 1..=4, Noise::default()), 1e-3);
+    }
+}
+
 /// White and coloured noise, with and without noise of rates, which moves reversals to other samples.
 #[test]
 fn intervals_of_delays_hold_and_no_delay_is_drawn_to_zero_or_to_a_sample() {
