@@ -3,10 +3,12 @@
 mod delays;
 mod instruments;
 
+pub use delays::From;
+
 use nalgebra::{DMatrix, DVector};
 
 use crate::arm::Arm;
-use crate::fit::{covariance, solve, solve_fast, Covariance, Equations, Gram, Pattern, Row, Solution, Sums};
+use crate::fit::{covariance, eliminate, solve, solve_fast, Covariance, Equations, Gram, Pattern, Row, Solution, Sums};
 use crate::options::Load;
 use crate::prepare::{Friction, Piece};
 
@@ -119,6 +121,21 @@ impl<'a> Estimate<'a> {
             x,
             weights: Vec::new(),
             spreads: vec![0.0; n],
+        }
+    }
+
+    /// Begins with what another estimate found from other rows of the same logs: delays, terms of friction and the values of all columns.
+    pub fn begin_with(&mut self, other: &Estimate<'_>) {
+        self.active.clone_from(&other.active);
+        self.delays.clone_from(&other.delays);
+        self.seeks_delay.clone_from(&other.seeks_delay);
+        self.velocities.clone_from(&other.velocities);
+        self.corrections.clone_from(&other.corrections);
+        self.x.clone_from(&other.x);
+        self.renew_sizes();
+        if self.along_reference.is_some() {
+            // Instruments go by weights.
+            self.fit_active();
         }
     }
 
@@ -389,23 +406,40 @@ impl<'a> Estimate<'a> {
         self.active = taken;
     }
 
-    /// Takes back, the least significant first, those of the terms that are smaller than their three-sigma interval, or brake negatively.
+    /// Takes back, the least significant first, those of the terms that are smaller than their three-sigma interval, or brake negatively. Without
+    /// one the others are those of the same weights.
     pub fn prune(&mut self, chosen: &mut [Vec<Friction>], terms: &[Friction]) {
+        let n = self.arm.dof();
+        let (_, Solution { mut x, mut inverse, .. }, mut covariance) = self.finish();
+        let mut left = covariance.columns.len();
         loop {
-            let (_, solution, covariance) = self.finish();
             let significance = |(k, &place): (usize, &usize)| match self.columns[place] {
-                Column::Friction(session, joint, term) if session + 1 == self.sessions && terms.contains(&term) => {
+                Column::Friction(session, joint, term)
+                    if session + 1 == self.sessions && terms.contains(&term) && chosen[joint].contains(&term) =>
+                {
                     let sigma = covariance.matrix[(k, k)].max(0.0).sqrt();
-                    let value = if term.is_not_negative() { solution.x[k] } else { solution.x[k].abs() };
+                    let value = if term.is_not_negative() { x[k] } else { x[k].abs() };
                     Some((value / (covariance.reach * sigma).max(f64::MIN_POSITIVE), joint, term))
                 }
                 _ => None,
             };
             let least = self.active.iter().enumerate().filter_map(significance).min_by(|a, b| a.0.total_cmp(&b.0));
-            let Some((_, joint, term)) = least.filter(|(ratio, ..)| *ratio < 1.0) else { return };
+            let Some((_, joint, term)) = least.filter(|(ratio, ..)| *ratio < 1.0) else { break };
             chosen[joint].retain(|chosen| *chosen != term);
-            self.activate(&|joint, term| chosen[joint].contains(&term));
+            let is_gone = |place: &usize| match self.columns[*place] {
+                Column::Friction(_, of, other) => (of, other) == (joint, term),
+                // That of the velocity.
+                Column::Gain(of) => of == joint && term == Friction::Stribeck,
+                _ => false,
+            };
+            let gone: Vec<usize> = covariance.columns.iter().copied().filter(is_gone).collect();
+            for (k, _) in self.active.iter().enumerate().filter(|(_, place)| gone.contains(place)) {
+                eliminate(&mut inverse, &mut x, k);
+            }
+            left -= gone.len();
+            covariance.without(&gone, left, n);
         }
+        self.activate(&|joint, term| chosen[joint].contains(&term));
     }
 
     /// The velocities of Stribeck friction of some joints. False: that of the joint is at an end of those that the log shows, and stays.
@@ -544,9 +578,7 @@ impl<'a> Estimate<'a> {
         }
         let gram = Sums::new(&extended, &active).gram(&self.weights);
         let whole = solve(&gram, &DVector::zeros(active.len()));
-        let found = covariance(&extended, &active, residuals, &self.weights, &whole.inverse, n);
-        let own = self.active.len();
-        Covariance { matrix: found.matrix.view((0, 0), (own, own)).into_owned(), ..found }
+        covariance(&extended, &active, residuals, &self.weights, &whole.inverse, n)
     }
 
     /// Drive gains by maximum likelihood in the currents: Gauss-Newton in (1/K, pi, f), noise on the currents.

@@ -300,6 +300,12 @@ impl Equations {
 pub struct Covariance {
     /// The sandwich.
     pub matrix: DMatrix<f64>,
+    /// Its columns.
+    pub columns: Vec<usize>,
+    /// (A'WA)^-1.
+    inverse: DMatrix<f64>,
+    /// The sum over blocks of time g_b g_b'.
+    meat: DMatrix<f64>,
     /// Blocks of time.
     pub blocks: usize,
     /// How long each lasts, s.
@@ -328,9 +334,46 @@ pub fn covariance(
     for score in &scores {
         meat.ger(1.0, score, score, 1.0);
     }
-    let (free, reach) = reach(blocks, active.len(), joints, 1);
-    let matrix = inverse * meat * inverse * (blocks as f64 / free);
-    Covariance { matrix, blocks, length, reach }
+    let mut found = Covariance {
+        matrix: DMatrix::zeros(0, 0),
+        columns: active.to_vec(),
+        inverse: inverse.clone(),
+        meat,
+        blocks,
+        length,
+        reach: 0.0,
+    };
+    found.renew(active.len(), joints);
+    found
+}
+
+impl Covariance {
+    /// Without some of its columns, as they would be 0; `unknowns` are left.
+    pub fn without(&mut self, columns: &[usize], unknowns: usize, joints: usize) {
+        for (k, _) in self.columns.iter().enumerate().filter(|(_, place)| columns.contains(place)) {
+            eliminate(&mut self.inverse, &mut DVector::zeros(self.columns.len()), k);
+        }
+        self.renew(unknowns, joints);
+    }
+
+    fn renew(&mut self, unknowns: usize, joints: usize) {
+        let (free, reach) = reach(self.blocks, unknowns, joints, 1);
+        self.matrix = &self.inverse * &self.meat * &self.inverse * (self.blocks as f64 / free);
+        self.reach = reach;
+    }
+}
+
+/// The inverse of a Gram matrix and the solution without an unknown: as its inverse and the solution of all others, with zeros in its place.
+pub fn eliminate(inverse: &mut DMatrix<f64>, x: &mut DVector<f64>, k: usize) {
+    let pivot = inverse[(k, k)];
+    if pivot > 0.0 {
+        let column = inverse.column(k) / pivot;
+        x.axpy(-x[k], &column, 1.0);
+        inverse.ger(-pivot, &column, &column, 1.0);
+    }
+    inverse.row_mut(k).fill(0.0);
+    inverse.column_mut(k).fill(0.0);
+    x[k] = 0.0;
 }
 
 /// How many blocks are free behind as many unknowns, and half the width of an interval in sigma so that this many of them are as rarely wrong

@@ -11,7 +11,7 @@ use armgen_codegen::suggest::did_you_mean;
 use nalgebra::{DMatrix, DVector};
 
 use crate::arm::Arm;
-use crate::estimate::{Column, Estimate, Run};
+use crate::estimate::{Column, Estimate, From, Run};
 use crate::finding::{Code, Finding, Findings};
 use crate::fit::{Covariance, Equations, Solution, FEW_BLOCKS};
 use crate::judge::{judge, Judgement, Model};
@@ -109,6 +109,9 @@ pub struct Identified {
     pub judgements: Vec<Judgement>,
 }
 
+/// So many samples, those of half a minute at a cutoff of 10 Hz, tell terms of friction, and delays nearly.
+const ENOUGH: usize = 1500;
+
 /// Blocks of time that last longer have residuals that no noise of a drive has, s.
 const COLOURED: f64 = 2.0;
 
@@ -117,9 +120,13 @@ pub fn identify(arm: &Arm, inputs: &[Input], options: &Options, findings: &mut F
     fitting(arm, &inputs[0].log.name, options, findings);
     let torques = Torques::new(arm, inputs, options, findings)?;
     let (cutoff, pieces) = torques.filtered(arm, options, findings)?;
-    let along_reference = options.instruments.then(|| torques.along_reference(arm, cutoff));
-    let mut estimate = torques.estimate(arm, &pieces, options);
-    if !enough_rows(&estimate, &inputs[0].log.name, findings) {
+    // By parts of long logs delays and terms of friction are found, by all of them their values.
+    let every = (pieces.iter().map(|piece| piece.kept.len()).sum::<usize>() / ENOUGH).max(1);
+    let parts = (every > 1).then(|| torques.pieces(arm, cutoff, every));
+    let along_reference = |every| options.instruments.then(|| torques.along_reference(arm, cutoff, every));
+    let [parts_along, along] = [parts.as_ref().and_then(|_| along_reference(every)), along_reference(1)];
+    let mut estimate = torques.estimate(arm, parts.as_ref().unwrap_or(&pieces), options);
+    if !enough_rows(&pieces, estimate.active.len(), &inputs[0].log.name, findings) {
         return None;
     }
     estimate.fit_active();
@@ -139,13 +146,25 @@ pub fn identify(arm: &Arm, inputs: &[Input], options: &Options, findings: &mut F
         None => estimate.seek_delays(),
     }
     let mut terms = chosen_terms(&mut estimate, options);
-    estimate.along_reference = along_reference.as_deref();
-    let errors_of_delays = match options.delay {
+    estimate.along_reference = parts_along.as_deref().or(along.as_deref());
+    let mut errors_of_delays = match options.delay {
         Some(_) => vec![None; arm.dof()],
-        None => settled_delays(&mut estimate, &mut terms, options, &inputs[0].log, findings),
+        None => settled_delays(&mut estimate, &mut terms, options),
     };
     if !findings.iter().any(|of| matches!(of.code, Code::SignSuspected | Code::JointOrder)) {
         suspect::again(&estimate, &inputs[0].log, &torques.gains, findings);
+    }
+    if parts.is_some() {
+        let of_parts = estimate;
+        estimate = torques.estimate(arm, &pieces, options);
+        estimate.along_reference = along.as_deref();
+        estimate.begin_with(&of_parts);
+        if options.delay.is_none() {
+            errors_of_delays = settled(&mut estimate, From::Rows);
+        }
+    }
+    if options.delay.is_none() {
+        last_delays(&estimate, &inputs[0].log, findings);
     }
     let of_gains = with_gains.then(|| drive_gains(&mut estimate, &terms, &torques.gains));
     let (equations, solution, covariance) = estimate.finish();
@@ -156,7 +175,10 @@ pub fn identify(arm: &Arm, inputs: &[Input], options: &Options, findings: &mut F
             estimate.x = of.x;
             (of.gains, of.matrix, of.reach)
         }
-        None => (torques.gains_as_given(), covariance.matrix.clone(), covariance.reach),
+        None => {
+            let own = estimate.active.len();
+            (torques.gains_as_given(), covariance.matrix.view((0, 0), (own, own)).into_owned(), covariance.reach)
+        }
     };
     // A term of friction that was left out may be there, too small to be seen: the intervals of all others allow for it.
     let wider = (options.friction.is_none() && !with_gains).then(|| with_terms_left_out(&estimate, &terms));
@@ -261,9 +283,9 @@ impl Torques {
         self.gains.iter().filter(|_| self.is_of_currents).map(given).collect()
     }
 
-    /// Filtered stretches of the logs with a cutoff, Hz.
-    fn pieces(&self, arm: &Arm, cutoff: f64) -> Vec<Piece> {
-        let of_log = |(place, log)| prepare(arm, place, log, cutoff, &self.flawed[place], true);
+    /// Filtered stretches of the logs with a cutoff, Hz: all, or one of so many.
+    fn pieces(&self, arm: &Arm, cutoff: f64, every: usize) -> Vec<Piece> {
+        let of_log = |(place, log)| prepare(arm, place, log, cutoff, &self.flawed[place], true, every);
         self.logs.iter().enumerate().flat_map(of_log).collect()
     }
 
@@ -272,7 +294,7 @@ impl Torques {
         let slowest = self.logs.iter().map(|log| 1.0 / period(&log.t)).fold(f64::INFINITY, f64::min);
         let highest = (0.1 * slowest).max(3.0f64.min(0.2 * slowest));
         let cutoff = options.cutoff.unwrap_or(highest);
-        let pieces = self.pieces(arm, cutoff);
+        let pieces = self.pieces(arm, cutoff, 1);
         if pieces.is_empty() {
             let text = format!("no stretch of the logs is longer than {:.1} s", 8.0 / cutoff);
             let help = "log at least 10 s without a gap";
@@ -284,20 +306,20 @@ impl Torques {
             first.fit_active();
             let chosen = cutoff_of(&first, highest);
             if chosen < cutoff {
-                return Some((chosen, self.pieces(arm, chosen)));
+                return Some((chosen, self.pieces(arm, chosen, 1)));
             }
         }
         Some((cutoff, pieces))
     }
 
     /// The same stretches along the reference of the drives.
-    fn along_reference(&self, arm: &Arm, cutoff: f64) -> Vec<Piece> {
+    fn along_reference(&self, arm: &Arm, cutoff: f64, every: usize) -> Vec<Piece> {
         let along = |log: &Log| {
             let reference = log.reference.iter().flatten().zip(&log.q);
             // Drives follow late: a sign that changes early is no instrument.
             Log { q: reference.map(|(reference, q)| nearest(&log.t, reference, q)).collect(), dq: None, ..log.clone() }
         };
-        let of_log = |(place, log): (usize, &Log)| prepare(arm, place, &along(log), cutoff, &self.flawed[place], true);
+        let of_log = |(place, log): (usize, &Log)| prepare(arm, place, &along(log), cutoff, &self.flawed[place], true, every);
         self.logs.iter().enumerate().flat_map(of_log).collect()
     }
 
@@ -322,9 +344,8 @@ fn in_torques(mut log: Log, gains: &[f64]) -> Log {
 const SIMPLE: [Friction; 3] = [Friction::Viscous, Friction::Coulomb, Friction::Offset];
 
 /// Whether joints move in at least five times as many rows as there are unknowns.
-fn enough_rows(estimate: &Estimate<'_>, log: &str, findings: &mut Findings) -> bool {
-    let unknowns = estimate.active.len();
-    let moving: usize = estimate.pieces.iter().map(|piece| piece.counts.iter().filter(|counts| **counts).count()).sum();
+fn enough_rows(pieces: &[Piece], unknowns: usize, log: &str, findings: &mut Findings) -> bool {
+    let moving: usize = pieces.iter().map(|piece| piece.counts.iter().filter(|counts| **counts).count()).sum();
     if moving < 5 * unknowns {
         let text = format!("{moving} rows of joints in motion, and {unknowns} unknowns");
         let help = "move all joints, longer or faster: `armgen excite` plans such a motion";
@@ -383,33 +404,37 @@ fn without_insignificant(estimate: &mut Estimate<'_>, terms: &mut [Vec<Friction>
 }
 
 /// The standard errors of delays and halves of their intervals. Delays, and terms of friction that they hid, are those of the estimate.
-fn settled_delays(
-    estimate: &mut Estimate<'_>,
-    terms: &mut [Vec<Friction>],
-    options: &Options,
-    log: &Log,
-    findings: &mut Findings,
-) -> Vec<Option<[f64; 2]>> {
-    let mut errors = estimate.settle(true);
-    if estimate.leave_undetermined_delays(&errors) {
-        errors = estimate.settle(false);
-    }
+fn settled_delays(estimate: &mut Estimate<'_>, terms: &mut [Vec<Friction>], options: &Options) -> Vec<Option<[f64; 2]>> {
+    let errors = settled(estimate, From::Afar);
     // Delays that were nearly right may have hidden terms.
     let before = terms.to_vec();
     if options.friction.is_none() && !options.instruments {
         estimate.choose(terms, Friction::Cubic);
         estimate.choose(terms, Friction::Load);
     }
-    if *terms != *before {
-        without_insignificant(estimate, terms);
-        errors = estimate.settle(true);
+    if *terms == *before {
+        return errors;
     }
+    without_insignificant(estimate, terms);
+    estimate.settle(From::Afar)
+}
+
+/// The same with the terms that there are.
+fn settled(estimate: &mut Estimate<'_>, from: From) -> Vec<Option<[f64; 2]>> {
+    let errors = estimate.settle(from);
+    if estimate.leave_undetermined_delays(&errors) {
+        return estimate.settle(From::Near);
+    }
+    errors
+}
+
+/// A finding for each delay that was found at the end of those that are tried.
+fn last_delays(estimate: &Estimate<'_>, log: &Log, findings: &mut Findings) {
     for (joint, delay) in estimate.arm.joints.iter().zip(&estimate.delays).filter(|(_, delay)| Estimate::is_last_delay(**delay)) {
         let text = format!("the delay of joint `{}`, {:.1} ms, is at the end of its range", joint.name, 1e3 * delay);
         let help = "bring the stamps of torques and positions together, or give `delay` in the options; noise of positions leads here, too: log rates (`dq_JOINT`)";
         findings.push(Finding::new(Code::DelayAtLimit, &log.name, text, help).in_column(log.effort_column(&joint.name)));
     }
-    errors
 }
 
 /// Drive gains, and the estimate that they belong to.

@@ -90,7 +90,7 @@ const SLOW: f64 = 0.02;
 pub fn judge(arm: &Arm, log: &Log, model: &Model) -> Judgement {
     let n = arm.dof();
     let rate = 1.0 / crate::signal::period(&log.t);
-    let pieces = prepare(arm, 0, log, CUTOFF.min(0.2 * rate), &[], model.covariance.is_some());
+    let pieces = prepare(arm, 0, log, CUTOFF.min(0.2 * rate), &[], model.covariance.is_some(), 1);
     let mut judgement = Judgement {
         measured: vec![Vec::new(); n],
         predicted: vec![Vec::new(); n],

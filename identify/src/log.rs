@@ -19,8 +19,10 @@ pub struct Scales {
     pub time: f64,
     /// rad, of joints that turn; their rates are per second.
     pub angle: f64,
-    /// m, of joints that slide; their rates are per second.
+    /// m, of joints that slide and of loads; rates are per second.
     pub length: f64,
+    /// kg, of loads.
+    pub mass: f64,
     /// N m.
     pub torque: f64,
     /// N.
@@ -31,7 +33,7 @@ pub struct Scales {
 
 impl Default for Scales {
     fn default() -> Scales {
-        Scales { time: 1.0, angle: 1.0, length: 1.0, torque: 1.0, force: 1.0, current: 1.0 }
+        Scales { time: 1.0, angle: 1.0, length: 1.0, mass: 1.0, torque: 1.0, force: 1.0, current: 1.0 }
     }
 }
 

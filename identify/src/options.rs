@@ -56,7 +56,7 @@ pub struct Options {
     pub validate: Vec<String>,
     /// Names of the log, and the names that they stand for.
     pub columns: BTreeMap<String, String>,
-    /// Units of the logs.
+    /// Units of the logs and of their loads.
     pub scales: Scales,
     /// Drive gains.
     pub gains: Gains,
@@ -99,8 +99,15 @@ const KEYS: [Key; 14] = [
 const LOG: [Key; 5] =
     [required("file", "file: free.csv"), optional("from"), optional("to"), optional("session"), optional("load")];
 const LOAD: [Key; 2] = [optional("mass"), optional("com")];
-const UNITS: [Key; 6] =
-    [optional("time"), optional("angle"), optional("length"), optional("torque"), optional("force"), optional("current")];
+const UNITS: [Key; 7] = [
+    optional("time"),
+    optional("angle"),
+    optional("length"),
+    optional("mass"),
+    optional("torque"),
+    optional("force"),
+    optional("current"),
+];
 
 /// Reads options; faults go to the diagnostics.
 pub fn read(source: &Source) -> (Options, Diagnostics) {
@@ -124,9 +131,13 @@ struct Reading<'d> {
 
 impl Reading<'_> {
     fn all(&mut self, fields: &Fields<'_>, options: &mut Options) {
+        // Loads of logs are in these units.
+        if let Some((key, node)) = fields.get("units") {
+            self.units(node, key, &mut options.scales);
+        }
         if let Some((key, node)) = fields.get("logs") {
             for item in self.list(node, key, "logs") {
-                options.logs.extend(self.log(item));
+                options.logs.extend(self.log(item, &options.scales));
             }
         }
         if let Some((key, node)) = fields.get("validate") {
@@ -135,9 +146,6 @@ impl Reading<'_> {
         }
         if let Some((key, node)) = fields.get("columns") {
             options.columns = self.pairs(node, key, "columns").into_iter().collect();
-        }
-        if let Some((key, node)) = fields.get("units") {
-            self.units(node, key, &mut options.scales);
         }
         if let Some((key, node)) = fields.get("gains") {
             options.gains = match &node.kind {
@@ -214,7 +222,7 @@ impl Reading<'_> {
         found.is_some_and(|found| found.value)
     }
 
-    fn log(&mut self, node: &Node) -> Option<LogOptions> {
+    fn log(&mut self, node: &Node, scales: &Scales) -> Option<LogOptions> {
         let at = armgen_codegen::document::reader::first_key(node);
         let fields = self.reader.mapping(node, "a log", at, &LOG)?;
         let mut log = LogOptions::default();
@@ -229,12 +237,14 @@ impl Reading<'_> {
             log.load.is_there = true;
             if !is_word(node, "unknown") {
                 let fields = self.reader.mapping(node, "`load`", key, &LOAD)?;
-                log.load.mass = fields.get("mass").and_then(|(key, node)| self.positive(node, key, "mass"));
+                log.load.mass =
+                    fields.get("mass").and_then(|(key, node)| self.positive(node, key, "mass")).map(|m| scales.mass * m);
                 log.load.com = fields.get("com").and_then(|(key, node)| {
                     let numbers: Vec<f64> = self
                         .list(node, key, "com")
                         .iter()
                         .filter_map(|item| self.number(item, item.span, "an element of `com`"))
+                        .map(|c| scales.length * c)
                         .collect();
                     numbers.try_into().ok()
                 });
@@ -245,10 +255,11 @@ impl Reading<'_> {
 
     fn units(&mut self, node: &Node, key: Span, scales: &mut Scales) {
         let Some(fields) = self.reader.mapping(node, "`units`", key, &UNITS) else { return };
-        let slots: [(&str, &str, &mut f64); 6] = [
+        let slots: [(&str, &str, &mut f64); 7] = [
             ("time", "s", &mut scales.time),
             ("angle", "rad", &mut scales.angle),
             ("length", "m", &mut scales.length),
+            ("mass", "kg", &mut scales.mass),
             ("torque", "N m", &mut scales.torque),
             ("force", "N", &mut scales.force),
             ("current", "A", &mut scales.current),
@@ -272,7 +283,8 @@ impl Reading<'_> {
                 Some(factor) => *slot = factor,
                 None => {
                     let message = format!("`{}` is no unit of `{name}`", excerpt(&text));
-                    let help = "units are for instance time: ms, angle: deg, length: mm, torque: Nmm, force: N, current: mA";
+                    let help =
+                        "units are for instance time: ms, angle: deg, length: mm, mass: lb, torque: Nmm, force: N, current: mA";
                     self.reader.report(Code::UnknownUnit, node.span, message, "unknown unit", help);
                 }
             }

@@ -133,18 +133,28 @@ const HIDDEN: [f64; 2] = [1e-4, 0.02];
 const STEADY: f64 = 0.1;
 
 /// The stretches of a log on grids of its median period. `flawed` are stretches of time with torques that do not count, by joint. Without
-/// `columns` there is no filtered Y_b.
-pub fn prepare(arm: &Arm, place: usize, log: &Log, cutoff: f64, flawed: &[Vec<Range<f64>>], columns: bool) -> Vec<Piece> {
+/// `columns` there is no filtered Y_b. With `every` above 1 they are short, and one of so many.
+pub fn prepare(
+    arm: &Arm,
+    place: usize,
+    log: &Log,
+    cutoff: f64,
+    flawed: &[Vec<Range<f64>>],
+    columns: bool,
+    every: usize,
+) -> Vec<Piece> {
     let period = period(&log.t);
     let rate = 1.0 / period;
     let margin = (4.0 / cutoff * rate).ceil() as usize;
+    // Short ones are twice as long as what the filter takes from their ends.
+    let longest = if every > 1 { 4 * margin } else { LONGEST };
     let mut all = Vec::new();
     for range in pieces(&log.t, period) {
         let (t, span) = (&log.t[range.clone()], log.t[range.end - 1] - log.t[range.start]);
         let samples = (span / period + 1.0 + 1e-6).floor() as usize;
         let mut first = 0;
         while first + 2 * margin + 4 < samples {
-            let last = (first + LONGEST + 2 * margin).min(samples);
+            let last = (first + longest + 2 * margin).min(samples);
             let grid: &[f64] = &(first..last).map(|k| t[0] + k as f64 * period).collect::<Vec<_>>();
             // Stamps that are even but for rounding are the grid, so that nothing is interpolated.
             let even =
@@ -161,7 +171,7 @@ pub fn prepare(arm: &Arm, place: usize, log: &Log, cutoff: f64, flawed: &[Vec<Ra
             if last == samples {
                 break;
             }
-            first = last - 2 * margin;
+            first += every * longest;
         }
     }
     all
@@ -323,47 +333,64 @@ fn smooth_sign(dq: f64, noise: f64) -> f64 {
 }
 
 impl Piece {
-    /// A part of the kept samples, as it would be with the states under other joints and signs: joint j has the states of `order[j]` times
-    /// `signs[j]`, and the torque of `torques[j]` times a scale. Y is not filtered. `delays` are taken out, and Stribeck friction has `velocities`.
-    pub fn exchanged(
-        &self,
-        arm: &Arm,
-        [order, torques]: [&[(usize, f64)]; 2],
-        [delays, velocities]: [&[f64]; 2],
-        step: usize,
-    ) -> Piece {
-        let n = order.len();
+    /// Every few of the kept samples. `delays` are taken out, and Stribeck friction has `velocities`. Y_b and what is known are left out: only
+    /// [`exchanged`](Self::exchanged) has them.
+    pub fn part(&self, delays: &[f64], velocities: &[f64], step: usize) -> Piece {
+        let n = delays.len();
         let rows: Vec<usize> = (0..self.kept.len()).step_by(step).collect();
-        let by_joint = |x: &[f64], at: usize| order.iter().map(|&(j, sign)| sign * x[at * n + j]).collect::<Vec<_>>();
-        let of_states = |x: &[f64]| rows.iter().flat_map(|&row| by_joint(x, self.kept[row])).collect::<Vec<f64>>();
-        let (q, dq, ddq) = (of_states(&self.q), of_states(&self.dq), of_states(&self.ddq));
-        let some = |column: Vec<f64>, factor: f64| rows.iter().map(|&row| factor * column[row]).collect::<Vec<f64>>();
-        let torque = |&(j, scale): &(usize, f64)| some(self.delayed(j, delays[j]), scale);
-        // All of these are odd functions of the rate.
-        let of_rates = |&(j, sign): &(usize, f64)| {
-            let columns = OF_RATES.map(|term| some(self.friction(j, term, velocities[j], &[], delays[j]), sign));
-            columns.to_vec()
-        };
-        let y = arm.regressor(&q, &dq, &ddq);
+        let of_states =
+            |x: &[f64]| rows.iter().flat_map(|&row| x[self.kept[row] * n..][..n].iter().copied()).collect::<Vec<f64>>();
+        let some = |column: Vec<f64>| rows.iter().map(|&row| column[row]).collect::<Vec<f64>>();
+        let of_rates = |j: usize| OF_RATES.map(|term| some(self.friction(j, term, velocities[j], &[], delays[j]))).to_vec();
         let spacing = if rows.len() > 1 { self.kept[rows[1]] - self.kept[rows[0]] } else { step };
         Piece {
             log: self.log,
             period: self.period * spacing as f64,
             start: self.time(0),
-            tau: torques.iter().map(torque).collect(),
+            q: of_states(&self.q),
+            dq: of_states(&self.dq),
+            ddq: of_states(&self.ddq),
+            tau: (0..n).map(|j| some(self.delayed(j, delays[j]))).collect(),
             kept: (0..rows.len()).collect(),
+            felt: Vec::new(),
+            y: Vec::new(),
+            known: Vec::new(),
+            counts: rows.iter().flat_map(|&row| self.counts[row * n..(row + 1) * n].iter().copied()).collect(),
+            eps: self.eps.clone(),
+            noises: self.noises.clone(),
+            filter: self.filter.clone(),
+            of_rates: (0..n).map(of_rates).collect(),
+            is_part: true,
+        }
+    }
+
+    /// A [`part`](Self::part) as it would be with the states under other joints and signs: joint j has the states of `order[j]` times a sign, and
+    /// the torque of `torques[j]` times a scale. Y is not filtered.
+    pub fn exchanged(&self, arm: &Arm, order: &[(usize, f64)], torques: &[(usize, f64)]) -> Piece {
+        let n = order.len();
+        let of_states = |x: &[f64]| -> Vec<f64> {
+            x.chunks_exact(n).flat_map(|state| order.iter().map(|&(j, sign)| sign * state[j])).collect()
+        };
+        let (q, dq, ddq) = (of_states(&self.q), of_states(&self.dq), of_states(&self.ddq));
+        let times = |column: &Vec<f64>, factor: f64| column.iter().map(|x| factor * x).collect::<Vec<f64>>();
+        // All of these are odd functions of the rate.
+        let of_rates = |&(j, sign): &(usize, f64)| self.of_rates[j].iter().map(|column| times(column, sign)).collect();
+        let y = arm.regressor(&q, &dq, &ddq);
+        Piece {
+            tau: torques.iter().map(|&(j, scale)| times(&self.tau[j], scale)).collect(),
+            kept: self.kept.clone(),
             felt: felt(arm, &y),
             y,
             known: arm.known(&q, &dq, &ddq),
-            counts: rows.iter().flat_map(|&row| order.iter().map(move |&(j, _)| self.counts[row * n + j])).collect(),
+            counts: self.counts.chunks_exact(n).flat_map(|counts| order.iter().map(|&(j, _)| counts[j])).collect(),
             eps: order.iter().map(|&(j, _)| self.eps[j]).collect(),
             noises: order.iter().map(|&(j, _)| self.noises[j]).collect(),
             filter: self.filter.clone(),
             of_rates: order.iter().map(of_rates).collect(),
-            is_part: true,
             q,
             dq,
             ddq,
+            ..*self
         }
     }
 
@@ -413,21 +440,38 @@ impl Piece {
     }
 
     fn column(&self, joint: usize, term: Friction, velocity: f64, sizes: &[f64], delay: f64) -> Vec<f64> {
-        let (n, by) = (self.tau.len(), delay / self.period);
-        let before = |states: &[f64]| -> Vec<f64> {
-            let own: Vec<f64> = states.iter().skip(joint).step_by(n).copied().collect();
-            if by == 0.0 {
-                own
-            } else {
-                shifted(&own, 0..own.len(), -by)
+        let [column] = self.columns(joint, term, velocity, sizes, [delay]);
+        column
+    }
+
+    /// [`friction`](Self::friction) of dry terms with delays, side by side.
+    pub fn columns<const L: usize>(
+        &self,
+        joint: usize,
+        term: Friction,
+        velocity: f64,
+        sizes: &[f64],
+        delays: [f64; L],
+    ) -> [Vec<f64>; L] {
+        let n = self.tau.len();
+        let of_joint = |states: &[f64]| states.iter().skip(joint).step_by(n).copied().collect::<Vec<f64>>();
+        let (rates, sizes) = (of_joint(&self.dq), of_joint(sizes));
+        let by = delays.map(|delay| delay / self.period);
+        let mut signals = vec![[0.0; L]; rates.len()];
+        for (i, &by) in by.iter().enumerate() {
+            let before = |x: &[f64]| if by == 0.0 { x.to_vec() } else { shifted(x, 0..x.len(), -by) };
+            let (rates, sizes) = (before(&rates), before(&sizes));
+            for (k, (signal, dq)) in signals.iter_mut().zip(rates).enumerate() {
+                let size = sizes.get(k).map_or(0.0, |g| g.abs());
+                signal[i] = term.column(dq, self.sign(joint, dq), size, velocity);
             }
-        };
-        let (rates, sizes) = (before(&self.dq), before(sizes));
-        let value = |(k, dq): (usize, &f64)| {
-            let size = sizes.get(k).map_or(0.0, |g| g.abs());
-            term.column(*dq, self.sign(joint, *dq), size, velocity)
-        };
-        let filtered = self.filter.both_ways(&rates.iter().enumerate().map(value).collect::<Vec<_>>());
-        shifted(&filtered, self.kept.iter().copied(), by)
+        }
+        let filtered = self.filter.side_by_side(&signals);
+        let mut columns = by.iter().enumerate();
+        std::array::from_fn(|_| {
+            let (i, &by) = columns.next().expect("a delay");
+            let own: Vec<f64> = filtered.iter().map(|x| x[i]).collect();
+            shifted(&own, self.kept.iter().copied(), by)
+        })
     }
 }

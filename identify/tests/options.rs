@@ -29,6 +29,18 @@ fn the_options_of_the_page_are_read() {
     assert_eq!((options.cutoff, options.delay, options.gains), (Some(5.0), Some(vec![1e-3, 2e-3]), Gains::Identify));
 }
 
+/// Loads are in the units of the file, as bodies are in those of a description.
+#[test]
+fn loads_have_units() {
+    let text = "logs: [{file: a.csv, load: {mass: 7.5, com: [0, 1, 10/4]}}]\nunits: {mass: lb, length: in}\n";
+    let (options, diagnostics) = read(&Source::new("o", text));
+    assert!(diagnostics.is_empty(), "{:?}", diagnostics.iter().collect::<Vec<_>>());
+    assert_eq!(options.logs[0].load.mass, Some(7.5 * 0.45359237));
+    assert_eq!(options.logs[0].load.com, Some([0.0, 0.0254, 2.5 * 0.0254]));
+    let (options, _) = read(&Source::new("o", "units: {mass: g}\nlogs: [{file: a.csv, load: {mass: 3500}}]\n"));
+    assert_eq!(options.logs[0].load.mass, Some(3.5));
+}
+
 #[test]
 fn slips_are_refused_with_the_word_that_was_meant() {
     let check = |text: &str, code: Code, word: &str| {
@@ -39,6 +51,7 @@ fn slips_are_refused_with_the_word_that_was_meant() {
     check("cutof: 5\n", Code::UnknownKey, "cutoff");
     check("friction: [viscos]\n", Code::WrongKind, "viscous");
     check("units: {angle: mm}\n", Code::UnknownUnit, "angle");
+    check("units: {mass: N}\n", Code::UnknownUnit, "mass");
     check("cutoff: -1\n", Code::NonPositiveLimit, "cutoff");
     check("torque: joint\n", Code::WrongKind, "motor");
     check("logs: [{from: 1}]\n", Code::MissingKey, "file");

@@ -26,8 +26,17 @@ const COARSE: [Grid; 1] = [(-4..=10, 2.5e-3)];
 /// About delays that are nearly right.
 const FINE: [Grid; 4] = [(-6..=6, 1e-3), (-4..=4, 2.5e-4), (-4..=4, 6e-5), (-3..=3, 1.5e-5)];
 
+/// The first of these about delays that are off by a part of a period.
+const NEAR: usize = 2;
+
+/// Times at most that these are gone through again.
+const SWEEPS: usize = 4;
+
 /// The least and the largest delay, s.
 const LIMITS: [f64; 2] = [-1e-2, 2.5e-2];
+
+/// Delays of a grid that are tried side by side.
+const TOGETHER: usize = 4;
 
 /// A delay this near to them is at its limit, s.
 const AT_LIMIT: f64 = 1e-4;
@@ -46,6 +55,17 @@ const LARGEST: [f64; 2] = [5e-3, 4e-5];
 
 /// A delay that changes by less has been found, s: at first, and where no grid follows.
 const SETTLED: [f64; 2] = [1e-4, 1e-8];
+
+/// How far delays may be from those that explain the logs best.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum From {
+    /// Terms of friction hid them.
+    Afar,
+    /// They are those of a part of the rows.
+    Rows,
+    /// Terms of friction, or other delays, have changed a little.
+    Near,
+}
 
 impl Estimate<'_> {
     /// Whether a delay is the first or the last of those that are tried.
@@ -75,15 +95,19 @@ impl Estimate<'_> {
 
     /// The delays that explain the logs best, through instruments where there are any. The standard error of each, and half of its interval;
     /// infinite where the logs do not show it, none where it is given.
-    pub fn settle(&mut self, from_afar: bool) -> Vec<Option<[f64; 2]>> {
-        if from_afar {
+    pub fn settle(&mut self, from: From) -> Vec<Option<[f64; 2]>> {
+        if from == From::Afar {
             self.step_delays(0);
         }
         let is_direct = self.along_reference.is_none();
         let mut weights = None;
         if is_direct {
-            self.delays_of_grid(if from_afar { &FINE } else { &FINE[FINE.len() - 2..] });
+            self.delays_of_grid(if from == From::Near { &FINE[NEAR..] } else { &FINE });
             weights = self.step_delays(1);
+        }
+        if is_direct && from == From::Afar {
+            self.sweep();
+            weights = None;
         }
         let n = self.arm.dof();
         let mut errors = vec![None; n];
@@ -123,7 +147,35 @@ impl Estimate<'_> {
             }
         }
         self.active = own;
+        if self.weights.len() != weights.len() {
+            // The first of this estimate.
+            self.weights = weights;
+        }
         errors
+    }
+
+    /// Goes through the finest grids again while that makes residuals smaller: before, the delays of other joints were not those yet, nor was |g|.
+    fn sweep(&mut self) {
+        let mut least = self.logarithm_of_spreads();
+        for _ in 0..SWEEPS {
+            let before = self.delays.clone();
+            self.delays_of_grid(&FINE[NEAR..]);
+            self.step_delays(1);
+            let next = self.logarithm_of_spreads();
+            if next >= least {
+                self.delays = before;
+                self.logarithm_of_spreads();
+                break;
+            }
+            least = next;
+        }
+    }
+
+    /// Of the robust spreads that a fit with the delays at hand leaves, the sum of logarithms.
+    fn logarithm_of_spreads(&mut self) -> f64 {
+        self.renew_sizes();
+        self.fit_active();
+        self.spreads.iter().map(|spread| spread.ln()).sum()
     }
 
     /// The mean distance of the places that reversals of a joint have within a period, s.
@@ -285,7 +337,7 @@ impl Estimate<'_> {
             // What is known of a torque.
             let known: Vec<f64> = rows.iter().map(|&k| known[k] + fixed(k)).collect();
             let weights: Vec<f64> = rows.iter().map(|&k| weights[k]).collect();
-            let with = |delay: f64| self.with_delay(&sums, &grams[j], j, delay, &known, &weights);
+            let with = |delays: [f64; TOGETHER]| self.with_delays_of(&sums, &grams[j], j, delays, &known, &weights);
             let mut others = Gram::zero(self.active.len());
             grams.iter().enumerate().filter(|(other, _)| *other != j).for_each(|(_, gram)| others.add(gram));
             let cost = |own: &Gram| {
@@ -296,11 +348,15 @@ impl Estimate<'_> {
             let mut best = (f64::INFINITY, self.delays[j], grams[j].clone());
             for (steps, step) in grids {
                 let middle = best.1;
-                for delay in steps.clone().map(|k| (middle + f64::from(k) * step).clamp(LIMITS[0], LIMITS[1])) {
-                    let own = with(delay);
-                    let cost = cost(&own);
-                    if cost < best.0 {
-                        best = (cost, delay, own);
+                let delays: Vec<f64> =
+                    steps.clone().map(|k| (middle + f64::from(k) * step).clamp(LIMITS[0], LIMITS[1])).collect();
+                for group in delays.chunks(TOGETHER) {
+                    let filled = std::array::from_fn(|i| group[i.min(group.len() - 1)]);
+                    for (&delay, own) in group.iter().zip(with(filled)) {
+                        let cost = cost(&own);
+                        if cost < best.0 {
+                            best = (cost, delay, own);
+                        }
                     }
                 }
             }
@@ -308,36 +364,62 @@ impl Estimate<'_> {
         }
     }
 
-    /// The sums of a joint's rows with another delay of it; `known` and `weights` are those of its rows.
-    fn with_delay(&self, sums: &Sums, gram: &Gram, j: usize, delay: f64, known: &[f64], weights: &[f64]) -> Gram {
+    /// The sums of a joint's rows with other delays of it; `known` and `weights` are those of its rows.
+    fn with_delays_of(
+        &self,
+        sums: &Sums,
+        gram: &Gram,
+        j: usize,
+        delays: [f64; TOGETHER],
+        known: &[f64],
+        weights: &[f64],
+    ) -> [Gram; TOGETHER] {
+        // By delay, columns of dry friction with their places.
+        let mut dry: [Vec<(usize, Vec<f64>)>; TOGETHER] = Default::default();
+        for (k, &place) in self.active.iter().enumerate() {
+            let Column::Friction(session, joint, term) = self.columns[place] else { continue };
+            if joint != j || !term.is_dry() {
+                continue;
+            }
+            dry.iter_mut().for_each(|dry| dry.push((k, Vec::with_capacity(known.len()))));
+            for (piece, sizes) in self.pieces.iter().zip(&self.sizes) {
+                let columns = if self.runs[piece.log].session == session {
+                    piece.columns(j, term, self.velocities[j], sizes, delays)
+                } else {
+                    delays.map(|_| vec![0.0; piece.kept.len()])
+                };
+                for (dry, column) in dry.iter_mut().zip(columns) {
+                    dry.last_mut().expect("a column").1.extend(column);
+                }
+            }
+        }
+        let mut dry = dry.into_iter();
+        delays.map(|delay| self.with_delay(sums, gram, j, delay, [known, weights], &dry.next().unwrap_or_default()))
+    }
+
+    /// The sums of a joint's rows with another delay of it and its columns of dry friction; `known` and `weights` are those of its rows.
+    fn with_delay(
+        &self,
+        sums: &Sums,
+        gram: &Gram,
+        j: usize,
+        delay: f64,
+        [known, weights]: [&[f64]; 2],
+        dry: &[(usize, Vec<f64>)],
+    ) -> Gram {
         let mut gram = gram.clone();
         let tau = self.pieces.iter().flat_map(|piece| piece.delayed(j, delay));
         let b: Vec<f64> = tau.zip(known).map(|(tau, known)| tau * self.corrections[j] - known).collect();
         let product = |x: &[f64], y: &[f64]| x.iter().zip(y).zip(weights).map(|((x, y), w)| w * x * y).sum::<f64>();
         let times = |x: &[f64]| sums.times(j, x.iter().zip(weights).map(|(x, w)| w * x));
         (gram.g, gram.bb) = (times(&b), product(&b, &b));
-        let mut dry: Vec<(usize, Vec<f64>)> = Vec::new();
-        for (k, &place) in self.active.iter().enumerate() {
-            let Column::Friction(session, joint, term) = self.columns[place] else { continue };
-            if joint != j || !term.is_dry() {
-                continue;
-            }
-            let of_piece = |(piece, sizes): (&Piece, &Vec<f64>)| {
-                if self.runs[piece.log].session == session {
-                    piece.friction(j, term, self.velocities[j], sizes, delay)
-                } else {
-                    vec![0.0; piece.kept.len()]
-                }
-            };
-            dry.push((k, self.pieces.iter().zip(&self.sizes).flat_map(of_piece).collect()));
-        }
-        for (k, column) in &dry {
+        for (k, column) in dry {
             let with_others = times(column);
             gram.h.set_column(*k, &with_others);
             gram.h.set_row(*k, &with_others.transpose());
             gram.g[*k] = product(column, &b);
         }
-        for (k, column) in &dry {
+        for (k, column) in dry {
             dry.iter().for_each(|(l, other)| gram.h[(*k, *l)] = product(column, other));
         }
         gram

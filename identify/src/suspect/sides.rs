@@ -23,9 +23,8 @@ pub(super) struct Sides {
     counts: Vec<f64>,
     pub(super) active: Vec<usize>,
     size: Vec<f64>,
+    sums: Sums,
     h: Vec<DMatrix<f64>>,
-    cross: Vec<Vec<DVector<f64>>>,
-    squares: Vec<Vec<f64>>,
     /// Rows that give what is at least 0, over the active columns.
     pub(super) inequalities: DMatrix<f64>,
 }
@@ -61,21 +60,8 @@ impl Sides {
         let weight = |k: usize| if equations.rows[k].counts { weights.get(k).copied().unwrap_or(1.0) } else { 0.0 };
         let counts: Vec<f64> = (0..equations.rows.len()).map(weight).collect();
         let h = sums.grams(&counts, n, |k| equations.rows[k].joint).into_iter().map(|gram| gram.h).collect();
-        let pairs = |j: usize, other: usize| sums.rows(j).iter().map(move |&k| (k, k - j + other)).collect::<Vec<_>>();
-        let cross = (0..n)
-            .map(|j| {
-                let of = |other| sums.times(j, pairs(j, other).into_iter().map(|(k, at)| counts[k] * equations.b[at]));
-                (0..n).map(of).collect()
-            })
-            .collect();
-        let squares = (0..n)
-            .map(|j| {
-                let of = |other| pairs(j, other).into_iter().map(|(k, at)| counts[k] * equations.b[at].powi(2)).sum();
-                (0..n).map(of).collect()
-            })
-            .collect();
         let inequalities = inequalities(estimate);
-        Sides { equations, counts, active, size, h, cross, squares, inequalities }
+        Sides { equations, counts, active, size, sums, h, inequalities }
     }
 
     pub(super) fn joints(&self) -> usize {
@@ -87,16 +73,25 @@ impl Sides {
         1.0 / (self.size[order[j]] * self.size[order[j]])
     }
 
+    /// A'Wb of the rows of a joint with the torque of another one, and its weighted sum of squares.
+    fn with_torque(&self, j: usize, other: usize) -> (DVector<f64>, f64) {
+        let rows = self.sums.rows(j);
+        let torque = |k: usize| self.equations.b[k - j + other];
+        let cross = self.sums.times(j, rows.iter().map(|&k| self.counts[k] * torque(k)));
+        (cross, rows.iter().map(|&k| self.counts[k] * torque(k).powi(2)).sum())
+    }
+
     pub(super) fn trial(&self, order: &[usize]) -> Trial<'_> {
         let n = self.size.len();
         let mut gram = Gram::zero(self.active.len());
-        let mut squares = 0.0;
+        let (mut sides, mut squares) = (Vec::new(), 0.0);
         for j in 0..n {
-            gram.h += &self.h[j] * self.weight(order, j);
-            squares += self.squares[j][order[j]] * self.weight(order, j);
+            let (weight, (cross, own)) = (self.weight(order, j), self.with_torque(j, order[j]));
+            gram.h += &self.h[j] * weight;
+            squares += own * weight;
+            sides.push(cross * weight);
         }
         let inverse = solve(&gram, &DVector::zeros(self.active.len())).inverse;
-        let sides: Vec<DVector<f64>> = (0..n).map(|j| &self.cross[j][order[j]] * self.weight(order, j)).collect();
         let parts: Vec<DVector<f64>> = sides.iter().map(|side| &inverse * side).collect();
         let products = DMatrix::from_fn(n, n, |i, j| sides[i].dot(&parts[j]));
         let values = DMatrix::from_columns(&parts.iter().map(|part| &self.inequalities * part).collect::<Vec<_>>());

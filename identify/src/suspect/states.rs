@@ -98,7 +98,8 @@ impl Reading {
 struct Readings<'e> {
     estimate: &'e Estimate<'e>,
     gains: &'e [f64],
-    step: usize,
+    /// Some of its samples, without delays.
+    parts: Vec<Piece>,
     /// Of the rows of the log as it is; none: all have the same.
     weights: Vec<f64>,
 }
@@ -119,7 +120,9 @@ impl Fitted {
 impl<'e> Readings<'e> {
     fn new(estimate: &'e Estimate<'e>, gains: &'e [f64], states: usize) -> Readings<'e> {
         let all: usize = estimate.pieces.iter().map(|piece| piece.kept.len()).sum();
-        Readings { estimate, gains, step: (all / states).max(1), weights: Vec::new() }
+        let step = (all / states).max(1);
+        let parts = estimate.pieces.iter().map(|piece| piece.part(&estimate.delays, &estimate.velocities, step)).collect();
+        Readings { estimate, gains, parts, weights: Vec::new() }
     }
 
     /// The log as it is.
@@ -163,9 +166,7 @@ impl<'e> Readings<'e> {
             }
         };
         let torques: Vec<(usize, f64)> = (0..n).map(torque).collect();
-        let exchanged =
-            |piece: &Piece| piece.exchanged(estimate.arm, [order, &torques], [&estimate.delays, &estimate.velocities], self.step);
-        let pieces: Vec<Piece> = estimate.pieces.iter().map(exchanged).collect();
+        let pieces: Vec<Piece> = self.parts.iter().map(|part| part.exchanged(estimate.arm, order, &torques)).collect();
         let mut other = Estimate { pieces: &pieces, along_reference: None, delays: vec![0.0; n], ..estimate.clone() };
         other.seeks_delay.fill(false);
         // Load friction takes g of the fit itself.
