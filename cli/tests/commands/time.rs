@@ -361,17 +361,19 @@ fn an_arm_of_many_joints_is_timed() {
     assert!((2.0..2.002).contains(&duration) && (1.999..=2.0).contains(&bound), "{duration}, {bound}");
 }
 
-/// The path of the tutorial has the report that the page prints.
+/// The first path of a page has the report that the page prints.
 #[test]
-fn the_tutorial_prints_what_the_program_prints() {
-    let page = fs::read_to_string(file("docs/pick-and-place.md")).expect("a page");
-    let block = |language: &str| {
-        let rest = page.split_once(&format!("```{language}\n")).expect("a block").1;
-        rest.split_once("```").expect("an end").0.to_owned()
-    };
+fn pages_print_what_the_program_prints() {
     let robot = fs::read_to_string(file("robot.yaml")).expect("a description");
-    let (printed, _, _) = timed("tutorial", &robot, &block("yaml"), &[], 0);
-    assert_eq!(printed, block("text"));
+    for page in ["pick-and-place", "timing"] {
+        let text = fs::read_to_string(file(&format!("docs/{page}.md"))).expect("a page");
+        let block = |language: &str| {
+            let rest = text.split_once(&format!("```{language}\n")).expect("a block").1;
+            rest.split_once("```").expect("an end").0.to_owned()
+        };
+        let (printed, _, _) = timed(page, &robot, &block("yaml"), &[], 0);
+        assert_eq!(printed, block("text"), "{page}");
+    }
 }
 
 #[test]
