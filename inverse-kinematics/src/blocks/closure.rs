@@ -152,11 +152,11 @@ impl<const N: usize> Loop<'_, N> {
     /// Whether |J⁻¹|² K `units` u >= 1/2 with lengths in units of the arm's length: what Newton and Kantorovich's theorem asks for to hold one
     /// solution apart from another after a change of the pose by its rounding. K, the bound of second derivatives, is taken as 4:
     /// lever arms of two lengths of the arm. Slides that become parallel go to infinity and come back from the other side: extended to r lengths,
-    /// |J⁻¹| has a factor r² from that pole, which is no second solution.
+    /// at an angle of 1/r, |J⁻¹| has a factor r² from that pole, which is no second solution.
     fn nearly_double(&self, equations: &Equations<N>, joints: &[[Real; 2]; N], units: Real) -> bool {
         const SECOND_DERIVATIVES: Real = 4.0;
-        let extended = if self.slides_far() { self.extended(joints) } else { 1.0 };
-        let pole = extended * extended;
+        let pole = if self.slides_far() { self.extended(joints).min(self.steepness(equations)) } else { 1.0 };
+        let pole = pole * pole;
         let mut square = 0.0;
         for k in 0..N {
             let mut unit = *equations;
@@ -169,6 +169,27 @@ impl<const N: usize> Loop<'_, N> {
             }
         }
         !(square / (pole * pole) * SECOND_DERIVATIVES * units * UNIT_ROUNDOFF < 0.5)
+    }
+
+    /// One over the least sine between directions of slides, 1 at least.
+    fn steepness(&self, equations: &Equations<N>) -> Real {
+        let direction = |i: usize| {
+            let mut z = [0.0; 3];
+            for (z, row) in z.iter_mut().zip(&equations.rows) {
+                *z = row.get(i).copied().unwrap_or(0.0);
+            }
+            z
+        };
+        let mut least: Real = 1.0;
+        for i in 0..N {
+            for j in 0..i {
+                if self.prismatic[i] && self.prismatic[j] {
+                    let normal = cross(direction(i), direction(j));
+                    least = least.min(dot(normal, normal));
+                }
+            }
+        }
+        1.0 / sqrt(least)
     }
 
     /// Whether slides may take parts of the arm far from where the loop is closed.
