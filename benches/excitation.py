@@ -155,7 +155,7 @@ def main():
         best = max(best, value)
         print(f"L-BFGS {k + 1:2}: {value:.4f}  {time.time() - begin:.0f} s  best {best:.4f}", flush=True)
     print(f"best of {starts} less armgen: {best - own:+.4f}")
-    sys.exit(best - own > 0.05)
+    sys.exit(int(best - own > 0.05))
 
 
 main()
