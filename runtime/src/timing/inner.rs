@@ -144,26 +144,16 @@ impl<T: RealField + Copy> Interval<T> {
         Self { low: (low, T::zero()), high: (high, T::zero()), ..Self::new() }
     }
 
-    /// Takes what a plane with x2 > 0 leaves; whether it moves the upper end. It divides only where it does.
+    /// Takes what a plane with x2 > 0 leaves; whether it moves the upper end.
     #[inline]
     pub(super) fn lower(&mut self, plane: &HalfPlane<T>, x0: T) -> bool {
-        let room = plane.most - plane.x0 * x0;
-        let moves = room < self.high.0 * plane.x2;
-        if moves {
-            self.high = (room / plane.x2, -plane.x0 / plane.x2);
-        }
-        moves
+        moves(&mut self.high, plane, x0)
     }
 
     /// The same with x2 < 0 and the lower end.
     #[inline]
     pub(super) fn raise(&mut self, plane: &HalfPlane<T>, x0: T) -> bool {
-        let room = plane.most - plane.x0 * x0;
-        let moves = room < self.low.0 * plane.x2;
-        if moves {
-            self.low = (room / plane.x2, -plane.x0 / plane.x2);
-        }
-        moves
+        moves(&mut self.low, plane, x0)
     }
 
     /// Takes what a plane leaves; which end of the interval it moves.
@@ -198,6 +188,17 @@ impl<T: RealField + Copy> Interval<T> {
     pub(super) fn size(&self) -> T {
         self.high.0.abs().max(self.low.0.abs())
     }
+}
+
+/// Moves the end of an interval to a plane that does not keep it; whether it does. It divides only there.
+#[inline]
+fn moves<T: RealField + Copy>(end: &mut (T, T), plane: &HalfPlane<T>, x0: T) -> bool {
+    let room = plane.most - plane.x0 * x0;
+    let moves = room < end.0 * plane.x2;
+    if moves {
+        *end = (room / plane.x2, -plane.x0 / plane.x2);
+    }
+    moves
 }
 
 #[cfg(test)]

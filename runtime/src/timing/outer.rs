@@ -124,7 +124,7 @@ impl<T: RealField + Copy, const N: usize> Side<T, N> {
         );
     }
 
-    /// The largest x at most `x` for which some u keeps all rows of a self.
+    /// The largest x at most `x` for which some u keeps all rows of a node.
     fn bound(&mut self, x: T) -> NodeBound<T> {
         // A first solution tells how large u is, and so how much the errors of m count.
         let (first, u) = self.largest(x);
