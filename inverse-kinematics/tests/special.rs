@@ -97,6 +97,30 @@ in_both_scalars! {
         assert!(doubtful * if SINGLE { 3 } else { 100 } <= regular, "{doubtful} of {regular} random poses are doubtful");
     }
 
+    /// Entries of a pose that are off by 1e-9 make no rotation. Joint 5 at pi brings the axes of joints 4 and 6 together, where two postures share a
+    /// root that such a pose would hide.
+    #[test]
+    fn two_slides_take_poses_that_are_nearly_rotations() {
+        if SINGLE {
+            return;
+        }
+        let random = &mut Random(9);
+        let mut lost = 0;
+        for _ in 0..10 {
+            let arm = with_two_slides(random);
+            for _ in 0..100 {
+                let mut q = arm.posture(random);
+                q[4] = 2.0 * RIGHT + dust(random);
+                let size = 10f64.powf(random.between(-12.0, -9.0));
+                let t = arm.at(&q).map(|row| row.map(|x| x + (size * random.between(-1.0, 1.0)) as Real));
+                let (_, listed) = solve_two_slides(&arm, &t);
+                let values: Vec<_> = q.iter().enumerate().map(|(i, q)| arm.value(i, *q)).collect();
+                lost += usize::from(!listed.iter().any(|other| apart(other, &values) < 1e-4));
+            }
+        }
+        assert!(lost == 0, "{lost} of 1000 postures are lost");
+    }
+
     /// The rows of a Jaco, with a wrist of 60 degrees.
     const JACO: [(f64, f64, f64, f64); 6] = [
         (0.0, 0.2755, 0.0, RIGHT),

@@ -209,6 +209,22 @@ impl<'a> TwoSlides<'a> {
     }
 }
 
+/// The same displacement with the rotation (3 - R R')/2 R: a rotation to e² where R is one to e.
+fn orthonormal(link: &Frame) -> Frame {
+    let mut result = *link;
+    for i in 0..3 {
+        for j in 0..3 {
+            let [x, y, z, _] = link[j];
+            let wanted = if i == j { 1.0 } else { 0.0 };
+            let off = 0.5 * (wanted - dot([link[i][0], link[i][1], link[i][2]], [x, y, z]));
+            result[i][0] += off * x;
+            result[i][1] += off * y;
+            result[i][2] += off * z;
+        }
+    }
+    result
+}
+
 /// Block 9, two prismatic joints: J1 L1 ... J6 L6 = 1 with joint 1 revolute and `slides` the numbers (from 0) of the prismatic joints, neighbours or not.
 ///
 /// With t1, t2, t3 the other revolute joints, what stands between them is Rx(alpha) and Rx(beta) as a rotation, sin alpha and sin beta not 0.
@@ -216,12 +232,16 @@ impl<'a> TwoSlides<'a> {
 /// of f the branch, block 5 and two linear equations the rest, Newton's method the last digits.
 ///
 /// - `length`: the arm's own, > 0. At most 8 solutions; `signs` are 0: the block has no branches.
+/// - The links are made orthonormal first: w² and h² vanish together for rotations alone, and a pose is right to its own rounding.
 /// - `near`: the number of solutions is not that of the roots, or rounding decides. The polynomial vanishes: `continuum`.
 /// - Without solutions `miss` is the residual of a least-squares posture (the links' unit, angles times `length`).
 pub fn two_slides(links: &[Frame; 6], slides: [usize; 2], length: Real) -> Branches<6, 8> {
     let mut unit = *links;
-    for row in unit.iter_mut().flatten() {
-        row[3] /= length;
+    for link in &mut unit {
+        *link = orthonormal(link);
+        for row in link.iter_mut() {
+            row[3] /= length;
+        }
     }
     let mut prismatic = [false; 6];
     for (i, kind) in prismatic.iter_mut().enumerate() {
@@ -318,14 +338,19 @@ fn slides_at(unit: &[Frame; 6], slides: [usize; 2], prismatic: &[bool; 6]) -> (B
     let distinct = found.count;
     let mut met = true;
     for root in roots.shallow.iter().take(roots.shallow_count) {
-        let given = [root.c, root.s];
-        let at = arm.at(given);
-        let w = sqrt(at.square.max(0.0));
-        let w = if at.f.at(w).abs() <= at.f.at(-w).abs() { w } else { -w };
-        let closed = closing.nearest(&arm.joints(given, &at, w), UNIT_ROUNDOFF);
-        let double = closed.residual <= 2.0 * ROUNDING && closed.double;
-        if double {
-            merge(&mut found, &closing, &closed, true);
+        let mut double = false;
+        // Where t1 and t3 turn about one axis, two regular solutions may share this place. Beside it t1 is another on either side and for either w.
+        for side in [-8.0 * SHALLOW, 8.0 * SHALLOW] {
+            let given = back_on_circle([root.c - side * root.s, root.s + side * root.c]);
+            let at = arm.at(given);
+            let w = sqrt(at.square.max(0.0));
+            for w in [w, -w] {
+                let closed = closing.nearest(&arm.joints(given, &at, w), UNIT_ROUNDOFF);
+                if closed.residual <= 2.0 * ROUNDING {
+                    double |= closed.double;
+                    merge(&mut found, &closing, &closed, closed.double);
+                }
+            }
         }
         met &= double;
     }
