@@ -123,14 +123,19 @@ impl<const N: usize> Loop<'_, N> {
     }
 
     /// [`Loop::close`] from `joints`, which leave `residual`, or from beside them by the angle whose square that is; after it steps that need no
-    /// regular Jacobian, and once more.
-    fn close_beside(&self, joints: &[[Real; 2]; N], residual: Real) -> Closed<N> {
+    /// regular Jacobian, and once more. Where a joint is `free` (bit i) but for the rounding that is left, only some of its values close the loop:
+    /// last it is turned by half a radian.
+    fn close_beside(&self, joints: &[[Real; 2]; N], residual: Real, free: u32) -> Closed<N> {
         let by = sqrt(residual / self.length).min(0.25);
         let mut best = Closed { joints: *joints, residual: Real::INFINITY, double: false };
-        for side in [0.0, by, -by] {
-            let mut step = [side; N];
-            for (step, prismatic) in step.iter_mut().zip(self.prismatic) {
-                *step = if prismatic { side * self.length } else { side };
+        for (side, turn) in [(0.0, 0.0), (by, 0.0), (-by, 0.0), (0.0, 0.5), (0.0, -0.5)] {
+            if free == 0 && turn != 0.0 {
+                break;
+            }
+            let mut step = [0.0; N];
+            for (i, (step, prismatic)) in step.iter_mut().zip(self.prismatic).enumerate() {
+                let unit = if prismatic { self.length } else { 1.0 };
+                *step = unit * if free >> i & 1 == 1 { side + turn } else { side };
             }
             let mut start = self.moved(joints, &step);
             for again in [true, false] {
@@ -303,7 +308,7 @@ fn close_those_that_meet<const J: usize, const N: usize>(found: &mut Branches<J,
         if branch.double || branch.free != 0 {
             let (_, residual) = closing.equations(&branch.joints);
             if !(residual <= NEXT_TO_ROUNDING * closing.length) {
-                let best = closing.close_beside(&branch.joints, residual);
+                let best = closing.close_beside(&branch.joints, residual, branch.free);
                 if !(best.residual <= CLOSED * closing.length) {
                     kept.near = true;
                     if best.residual < least {
