@@ -78,6 +78,46 @@ in_both_scalars! {
         assert!(worst <= sqrt(UNIT_ROUNDOFF), "{worst:e}");
     }
 
+    /// Three parallel axes, 5 and 6 apart and at right angles, of random lengths.
+    fn with_parallel_axes(random: &mut Random) -> Arm {
+        let l: [f64; 6] = std::array::from_fn(|_| random.between(0.1, 0.5));
+        let rows = [
+            (random.between(-3.0, 3.0), 0.0, 0.0, RIGHT),
+            (RIGHT, 0.1, l[0], 0.0),
+            (0.0, 0.1, l[1], 0.0),
+            (0.0, 0.0, l[2], RIGHT),
+            (0.0, 0.0, -l[3], -RIGHT),
+            (0.0, -l[4], -l[5], RIGHT),
+        ];
+        Arm::standard(&rows, &[])
+    }
+
+    /// A last axis that is nearly parallel to the three turns by an angle that is hardly known, and the elbow may seem out of reach. Two ways that
+    /// lead to one posture are one, and double.
+    #[test]
+    fn an_elbow_is_in_reach_where_the_last_axis_is_nearly_parallel() {
+        let random = &mut Random(11);
+        let (mut lost, mut twice) = (0, 0);
+        for _ in 0..20 {
+            let arm = with_parallel_axes(random);
+            let plan = plan(&arm);
+            for i in 0..200 {
+                let mut q = special(&arm, 0.7, random);
+                q[2] = dust(random);
+                q[4] = if i % 2 == 0 { 0.0 } else { 2.0 * RIGHT } + dust(random);
+                let size = if i % 4 < 2 || SINGLE { 0.0 } else { 10f64.powf(random.between(-12.0, -9.0)) };
+                let t = arm.at(&q).map(|row| row.map(|x| x + (size * random.between(-1.0, 1.0)) as Real));
+                let found = solve(&plan, &arm, &t);
+                lost += usize::from(size == 0.0 && found.count == 0 && !found.near && !found.continuum);
+                for (k, branch) in found.found().iter().enumerate() {
+                    let same = |other: &&Branch<6>| apart(&other.joints, &branch.joints) < 1e-9 as Real && !other.double && other.free == 0;
+                    twice += usize::from(!branch.double && branch.free == 0 && found.found()[..k].iter().any(|other| same(&other)));
+                }
+            }
+        }
+        assert!(lost == 0 && twice == 0, "{lost} are called out of reach, {twice} are listed twice");
+    }
+
     /// Slides at joints 1 and 3 at right angles to the axis between them, of random lengths.
     fn with_two_slides(random: &mut Random) -> Arm {
         let l: [f64; 7] = std::array::from_fn(|_| random.between(0.05, 0.3));

@@ -267,6 +267,9 @@ pub fn polish<const J: usize, const N: usize>(found: &mut Branches<J, N>, closin
                 kept.near = true;
                 branch.double = true;
             }
+            if is_known(&mut kept, &branch, closing) {
+                continue;
+            }
         }
         if !(branch.double && is_among(kept.found(), &branch, closing)) {
             kept.add(branch);
@@ -343,6 +346,19 @@ fn posture<const J: usize>(number: usize, prismatic: &[bool; J]) -> [[Real; 2]; 
         *joint = if *prismatic { [0.0; 2] } else { QUARTERS[(number + i * i) % 4] };
     }
     joints
+}
+
+/// Whether two ways have led to one solution: rounding has parted a double root. It is double then.
+fn is_known<const J: usize, const N: usize>(kept: &mut Branches<J, N>, branch: &Branch<J>, closing: &Loop<J>) -> bool {
+    let count = kept.count;
+    for known in kept.all.iter_mut().take(count) {
+        let off = apart(&known.joints, &branch.joints, &closing.prismatic, closing.length);
+        if known.free == 0 && off <= SAME * sqrt(UNIT_ROUNDOFF) {
+            known.double = true;
+            return true;
+        }
+    }
+    false
 }
 
 /// Whether one of some solutions is the other of two that meet, as far as rounding lets one tell. Both are double then.

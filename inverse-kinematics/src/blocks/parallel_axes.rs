@@ -141,6 +141,15 @@ fn mended(v: Vector, q: [Real; 2], f: &Frame, wanted: Real) -> [Real; 2] {
     [c * q[0] - s * q[1], c * q[1] + s * q[0]]
 }
 
+/// How far qc may be off, rad, where axis c is nearly parallel to the three: the normal is `sine` long across it, and from both sides that differs by
+/// `miss`. The angles that give it are found from cosines, which leave u/sine of it. A length that is least where it was looked for leaves the root
+/// of its own error.
+#[cold]
+fn error_beside_parallel(sine: Real, miss: Real) -> Real {
+    let over = 1.0 / (sine + UNIT_ROUNDOFF);
+    0.25 * ROUNDING * over * over + sqrt(2.0 * miss * over)
+}
+
 /// Where qc is free: an angle that leaves the elbow within reach, (1, 0) if that does. The squared distance that two links have to reach is
 /// k0 + kc c + ks s; the middle of what of it is within their reach is aimed at.
 fn within_reach(place: &impl Fn([Real; 2]) -> [Real; 2], l1: Real, l2: Real) -> [Real; 2] {
@@ -237,7 +246,8 @@ pub fn three_parallel(links: &[Frame; 6]) -> Branches<6, 8> {
         let qc = if open { Turn { value: within_reach(&|qc| bracket(qc).0, a1.abs(), a2.abs()), ..qc } } else { qc };
         let (place, turned) = bracket(qc.value);
         let (s1, s2) = (if a1 < 0.0 { -1.0 } else { 1.0 }, if a2 < 0.0 { -1.0 } else { 1.0 });
-        let arm = two_links(a1.abs(), a2.abs(), place, noise, solution.error * lengths);
+        let error = if sine < 0.125 { solution.error + error_beside_parallel(sine, qc.miss) } else { solution.error };
+        let arm = two_links(a1.abs(), a2.abs(), place, noise, error * lengths);
         found.missed(arm.miss);
         found.near |= solution.double && arm.count == 0;
         let free = [solution.a_free, arm.shoulder_free, arm.elbow_free, false, solution.b_free, qc.free];
@@ -253,7 +263,7 @@ pub fn three_parallel(links: &[Frame; 6]) -> Branches<6, 8> {
                 joints: [qa, q1, q2, [x, side2 * y], qb, qc.value],
                 signs: solution.signs | (i as u16) << 2,
                 double: solution.double || arm.double,
-                error: solution.error,
+                error,
                 free,
             });
         }
