@@ -5,8 +5,8 @@ use armgen_codegen::kinds::Scalar;
 use armgen_codegen::schedule::Options;
 use armgen_codegen::source::Source;
 use armgen_tests::exported_arms::{arm, Before};
-use armgen_verify::checker::Effort;
-use armgen_verify::claims::Claims;
+use armgen_verify::judge::checker::Effort;
+use armgen_verify::read::claims::Claims;
 use armgen_verify::verify_with;
 
 /// Less than any thread has: how deep calls go must not follow from numbers.
@@ -52,6 +52,18 @@ fn short_lever_arms_keep_their_digits() {
                 link: {{mass: 1, inertia: {{xx: 0.1, yy: 0.1, zz: 0.1}}}}}}\n  \
              - {{name: elbow, type: revolute, origin: {{xyz: [-3.0e-06, {dust}, {lever}], rpy: [pi/2, 3.141593, -pi/3]}}, axis: [0, 0, 1],\n     \
                 link: {{mass: 8, com: [0, -0.47, 0], inertia: {{xx: 0.1, yy: 0.1, zz: 0.1}}}}}}\n"
+        );
+        verified(text, Scalar::F64);
+    }
+    // The next axis passes the joint's own within a micrometre, and is nearly parallel to it: the foot of their common normal is 8 cm away.
+    for (dust, turn) in [("-8.1107e-07", "0.782907"), ("2e-06", "0.7829"), ("-1e-08", "0.78")] {
+        let text = format!(
+            "name: short\nconvention: urdf\ngravity: [0, 0, -9.81]\njoints:\n  \
+             - {{name: rail, type: prismatic, axis: [1, 0, 0], link: {{mass: 30, inertia: {{xx: 1, yy: 1, zz: 1}}}}}}\n  \
+             - {{name: shoulder, type: revolute, origin: {{xyz: [0.1524, 0, 0], rpy: [3.1415927, -1.570797, 0.7854]}},\n     \
+                axis: [0.286, -0.758, -0.457], link: {{mass: 1, inertia: {{xx: 0.1, yy: 0.1, zz: 0.1}}}}}}\n  \
+             - {{name: elbow, type: revolute, origin: {{xyz: [{dust}, 0, -9.7e-09], rpy: [-1.844319, -3.141893, {turn}]}},\n     \
+                axis: [-0.441, 0.285, 0.416], link: {{mass: 1, com: [0.333, 0, 0], inertia: {{xx: 0.1, yy: 0.1, zz: 0.1}}}}}}\n"
         );
         verified(text, Scalar::F64);
     }

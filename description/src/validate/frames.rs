@@ -15,7 +15,7 @@
 //!
 //! Where x_i would need another root than one of an integer, and where the foot is further away than the arm is long (nearly parallel
 //! lines), the frame stays with the link: values are the same, the equations have more terms. So does the origin where the link lies next to its
-//! parent's axis, but not on it: its short lever arm would be the sum of two longer ones, and lose its digits.
+//! parent's axis, or the next link next to its own, but not on it: a short lever arm would be the sum of two longer ones, and lose its digits.
 
 use std::cmp::Ordering;
 
@@ -45,8 +45,8 @@ pub(super) fn lay(joints: &mut [Joint], ends: &[(usize, &Pose)], anywhere: bool,
                 let next = joints[i + 1..].iter().find(|joint| joint.parent.is_some_and(|parent| parent.index() == i));
                 let end = ends.iter().find(|(link, _)| *link == i).map_or(&bare, |(_, tool)| tool);
                 let turns = joints[i].parent.is_some_and(|parent| joints[parent.index()].kind == JointKind::Revolute);
-                let is_lost = |distance, lever| turns && is_lost(distance, lever, joints.len());
-                frame(&joints[i], before, next, end, (reach, &is_lost), parameters)
+                let is_lost = |distance, lever| is_lost(distance, lever, joints.len());
+                frame(&joints[i], before, next, end, (reach, turns, &is_lost), parameters)
             }
             false => Placement::identity(),
         };
@@ -89,13 +89,13 @@ fn is_lost(distance: f64, lever: f64, joints: usize) -> bool {
 }
 
 /// A joint frame in the frame in which the row has its axis. `before`: that of the parent, likewise; `next`: its first child; `end`: the frame at
-/// the end of the chain, if it carries none.
+/// the end of the chain, if it carries none. `is_lost`: whether a distance is lost beside a longer lever arm.
 fn frame(
     joint: &Joint,
     before: Option<&Placement>,
     next: Option<&Joint>,
     end: &Pose,
-    (reach, is_lost): (f64, &dyn Fn(f64, f64) -> bool),
+    (reach, parent_turns, is_lost): (f64, bool, &dyn Fn(f64, f64) -> bool),
     parameters: &[Parameter],
 ) -> Placement {
     let u = &joint.row.axis;
@@ -144,15 +144,21 @@ fn frame(
     } else {
         foot(p, &v, &n).unwrap_or_else(|| of_before.clone())
     };
+    // How far the next link lies from this axis.
+    let onward_distance = match joint.kind {
+        JointKind::Revolute => length(cross_polynomial(p, u).each_ref().map(|x| value(x, parameters))),
+        JointKind::Prismatic => 0.0,
+    };
     // How far 0 lies from the parent's axis, and a point of this axis for each metre of its own.
-    let (distance, slope) = before.as_ref().map_or((0.0, 0.0), |frame| {
+    let (distance, slope) = before.as_ref().filter(|_| parent_turns).map_or((0.0, 0.0), |frame| {
         let z = column(frame, 2);
         let lever = cross_polynomial(&frame.translation, &z).each_ref().map(|x| value(x, parameters));
         (length(lever), length(cross(&z, u).each_ref().map(Number::to_f64)))
     });
     let fits = |s: &Polynomial| {
         let size = value(s, parameters).abs();
-        size <= reach && !is_lost(distance, size * slope) && s.terms().all(|(_, c)| c.terms().count() <= MAX_TERMS)
+        let lost = is_lost(distance, size * slope) || is_lost(onward_distance, size);
+        size <= reach && !lost && s.terms().all(|(_, c)| c.terms().count() <= MAX_TERMS)
     };
     let along = [along, of_before].into_iter().find(fits).unwrap_or_default();
     let laid = about_axis(u, &x, &along);
