@@ -180,10 +180,18 @@ pub fn of(manipulator: &Manipulator) -> Result<InverseKinematics, String> {
     if given.is_some() {
         return Err("`given` is for arms with one joint more than the target asks for".into());
     }
+    if target == Target::Pose && always_moves(&chain) {
+        return Err("at every pose some joints can move while the end effector stays".into());
+    }
     if target == Target::Pose && chain.joints.len() < 6 {
         return virtual_joints::classify(&chain, &length);
     }
     classify(&completed(chain, target)?, None, target, &length)
+}
+
+/// Whether the columns of the Jacobian depend on each other at every posture.
+fn always_moves(chain: &Chain) -> bool {
+    Jacobian::of(chain, None).is_some_and(|jacobian| jacobian.rank(6) < chain.joints.len())
 }
 
 /// An arm with one joint more than its target needs. The description can name the given value. Otherwise it is the swivel angle,

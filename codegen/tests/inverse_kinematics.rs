@@ -237,9 +237,18 @@ fn fewer_joints_than_rows() {
 #[test]
 fn joints_that_can_always_move_are_told() {
     let rows = [(R, "0.5", "0", "0", "0"), (R, "0.4", "0", "0", "0"), (R, "0.2", "0", "0", "0"), (R, "0.2", "0", "0", "0")];
-    for rows in
-        [&rows[..], &[(P, "0", "0", "0", "0"), (P, "0", "0", "0", "0")], &[(R, "0", "0", "0", "0"), (R, "0", "0", "0", "0")]]
-    {
+    // Slides of joints 3 and 4 are parallel.
+    let six = [
+        (R, "0", "pi/2", "0.149", "0"),
+        (R, "0.25", "pi/2", "0", "0"),
+        (P, "0.449", "0", "0", "pi/2"),
+        (P, "0.1", "pi", "0", "0"),
+        (R, "0", "pi/2", "0.301", "pi/2"),
+        (P, "0.1", "0", "0", "0"),
+    ];
+    let slides = [(P, "0", "0", "0", "0"), (P, "0", "0", "0", "0")];
+    let turns = [(R, "0", "0", "0", "0"), (R, "0", "0", "0", "0")];
+    for rows in [&rows[..], &six, &slides, &turns] {
         let refused = classified("idle", &description("idle", "", rows)).expect_err("no class");
         assert_eq!(refused, "at every pose some joints can move while the end effector stays");
     }

@@ -98,10 +98,6 @@ fn ways(chain: &Chain, length: &Number) -> Vec<Vec<Virtual>> {
 /// else the first of any class.
 pub(super) fn classify(chain: &Chain, length: &Number) -> Result<InverseKinematics, String> {
     let own = chain.joints.len();
-    let rank = |chain: &Chain| Jacobian::of(chain, None).map(|jacobian| jacobian.rank(6));
-    if rank(chain).is_some_and(|rank| rank < own) {
-        return Err("at every pose some joints can move while the end effector stays".into());
-    }
     if let Ok(found) = classes::classify(chain, Target::Pose, length) {
         return Ok(found);
     }
@@ -110,7 +106,8 @@ pub(super) fn classify(chain: &Chain, length: &Number) -> Result<InverseKinemati
         way.iter().for_each(|one| completed.virtual_at_the_end(one));
         completed
     };
-    let regular = |completed: &Chain| rank(completed).is_none_or(|rank| rank == completed.joints.len());
+    let regular =
+        |completed: &Chain| Jacobian::of(completed, None).is_none_or(|jacobian| jacobian.rank(6) == completed.joints.len());
     let all: Vec<Chain> = ways(chain, length).iter().map(completed).filter(regular).collect();
     let closed = all.iter().find_map(|completed| classes::closed_form(completed, Target::Pose, length).ok());
     let found =
