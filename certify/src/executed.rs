@@ -4,13 +4,13 @@ use armgen_codegen::schedule::{Options, Selection};
 use armgen_codegen::source::Source;
 use armgen_codegen::{Scalar, Trig};
 use armgen_evaluate::{Angle, Arithmetic, Input, Operator, Program};
-use armgen_verify::checker::{Checker, Effort};
-use armgen_verify::claims::Claims;
-use armgen_verify::equations::parameters::Vector;
-use armgen_verify::program::{self as checked, Literal, Output, Step};
-use armgen_verify::reader::Module;
-use armgen_verify::report::Report;
-use armgen_verify::{constants, hash};
+use armgen_verify::certificate::report::Report;
+use armgen_verify::judge::checker::{Checker, Effort};
+use armgen_verify::read::claims::Claims;
+use armgen_verify::read::reader::Module;
+use armgen_verify::textbook::equations::parameters::Vector;
+use armgen_verify::values::program::{self as checked, Literal, Output, Step};
+use armgen_verify::{hash, judge::constants};
 
 /// Verifies programs of functions of an arm, as they are executed, against the text of its description.
 ///

@@ -28,15 +28,15 @@ use armgen_codegen::pass::{Pass, Passes};
 use armgen_codegen::schedule::Options;
 use armgen_codegen::source::Source;
 use armgen_codegen::{validate, Generated, Scalar};
+use armgen_verify::certificate::report::Report;
 use armgen_verify::certificate::Certificate;
-use armgen_verify::checker::Effort;
-use armgen_verify::claims::Claims;
-use armgen_verify::companion::Extent;
-use armgen_verify::enclosure::Float;
+use armgen_verify::floats::companion::Extent;
 use armgen_verify::inverse_kinematics::{self, Proposal, Values};
-use armgen_verify::reader::{Module, ModuleText};
-use armgen_verify::report::Report;
-use armgen_verify::{bounds, companion, hash, verify_with};
+use armgen_verify::judge::checker::Effort;
+use armgen_verify::read::claims::Claims;
+use armgen_verify::read::reader::{Module, ModuleText};
+use armgen_verify::values::enclosure::Float;
+use armgen_verify::{floats::bounds, floats::companion, hash, verify_with};
 
 #[cfg(not(test))]
 pub use executed::verify_executed;

@@ -95,7 +95,7 @@ pub(crate) fn package(folder: &Path) -> Result<Source, u8> {
         }
         files.push((file, text));
     }
-    let joined = armgen_verify::reader::matlab::joined(files);
+    let joined = armgen_verify::read::reader::matlab::joined(files);
     joined.map(|text| Source::new(name, text)).map_err(|(file, reason)| {
         terminal::error(&format!("{}: this file {reason}", folder.join(file).display()));
         FAULTY

@@ -14,8 +14,8 @@ use armgen_codegen::source::Source;
 use armgen_codegen::{validate, Model};
 use armgen_tests::exported_arms;
 use armgen_tests::random::Random;
-use armgen_verify::checker::Effort;
-use armgen_verify::claims::Claims;
+use armgen_verify::judge::checker::Effort;
+use armgen_verify::read::claims::Claims;
 use armgen_verify::verify_with;
 
 /// Points in prime fields, each of its own prime.

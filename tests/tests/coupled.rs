@@ -17,11 +17,11 @@ use armgen_tests::functions::{Arguments, Functions};
 use armgen_tests::interpreter::Interpreted;
 use armgen_tests::precision::{deviation, REFERENCE};
 use armgen_tests::random::Random;
-use armgen_verify::checker::Effort;
-use armgen_verify::claims::Claims;
-use armgen_verify::reader::ModuleText;
-use armgen_verify::report::Report;
-use armgen_verify::report::Verdict::Equal;
+use armgen_verify::certificate::report::Report;
+use armgen_verify::certificate::report::Verdict::Equal;
+use armgen_verify::judge::checker::Effort;
+use armgen_verify::read::claims::Claims;
+use armgen_verify::read::reader::ModuleText;
 use armgen_verify::verify_with;
 use serde_json::Value;
 

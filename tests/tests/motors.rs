@@ -12,7 +12,7 @@ use armgen_tests::functions::{Arguments, Functions};
 use armgen_tests::interpreter::Interpreted;
 use armgen_tests::precision::{deviation, REFERENCE};
 use armgen_tests::random::Random;
-use armgen_verify::report::Verdict::Equal;
+use armgen_verify::certificate::report::Verdict::Equal;
 use serde_json::Value;
 
 use crate::coupled::{generated, judged};

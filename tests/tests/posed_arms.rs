@@ -9,8 +9,8 @@ use armgen_tests::judge::{judge, Tolerance};
 use armgen_tests::oracle::Description;
 use armgen_tests::precision::{FORWARD_RESIDUAL, ORACLE};
 use armgen_tests::random;
-use armgen_verify::checker::Effort;
-use armgen_verify::claims::Claims;
+use armgen_verify::judge::checker::Effort;
+use armgen_verify::read::claims::Claims;
 use armgen_verify::verify_with;
 
 /// How many arms, from seed 0 on; another number, or seeds such as 200..500, with `ARMGEN_RANDOM_ARMS`.

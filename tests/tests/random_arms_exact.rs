@@ -26,8 +26,8 @@ use armgen_tests::functions::expected;
 use armgen_tests::judge::{judge, Tolerance};
 use armgen_tests::precision::{FORWARD_RESIDUAL, ORACLE};
 use armgen_tests::random::{self, Random};
-use armgen_verify::checker::Effort;
-use armgen_verify::claims::Claims;
+use armgen_verify::judge::checker::Effort;
+use armgen_verify::read::claims::Claims;
 use armgen_verify::verify_with;
 
 const ARMS: u64 = 32;

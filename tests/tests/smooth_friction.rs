@@ -10,9 +10,9 @@ use armgen_tests::functions::{Arguments, Functions};
 use armgen_tests::interpreter::Interpreted;
 use armgen_tests::judge::{judge, Tolerance};
 use armgen_tests::precision::{FORWARD_RESIDUAL, ORACLE};
-use armgen_verify::checker::Effort;
-use armgen_verify::claims::Claims;
-use armgen_verify::reader::ModuleText;
+use armgen_verify::judge::checker::Effort;
+use armgen_verify::read::claims::Claims;
+use armgen_verify::read::reader::ModuleText;
 use armgen_verify::verify_with;
 
 const ARM: &str = include_str!("../data/smooth_friction.yaml");

@@ -14,10 +14,10 @@ use armgen_runtime::robot::{Dynamics, Kinematics, OperationalInertia};
 use armgen_tests::functions::{Arguments, Functions};
 use armgen_tests::interpreter::Interpreted;
 use armgen_tests::precision::{deviation, REFERENCE};
-use armgen_verify::checker::Effort;
-use armgen_verify::claims::Claims;
-use armgen_verify::reader::ModuleText;
-use armgen_verify::report::{Report, Verdict};
+use armgen_verify::certificate::report::{Report, Verdict};
+use armgen_verify::judge::checker::Effort;
+use armgen_verify::read::claims::Claims;
+use armgen_verify::read::reader::ModuleText;
 use armgen_verify::verify_with;
 use serde_json::Value;
 

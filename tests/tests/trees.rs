@@ -9,8 +9,8 @@ use armgen_codegen::Model;
 use armgen_tests::functions::{Arguments, Functions};
 use armgen_tests::interpreter::Interpreted;
 use armgen_tests::precision::{deviation, REFERENCE};
-use armgen_verify::checker::Effort;
-use armgen_verify::claims::Claims;
+use armgen_verify::judge::checker::Effort;
+use armgen_verify::read::claims::Claims;
 use armgen_verify::verify_with;
 use serde_json::Value;
 

@@ -11,11 +11,11 @@ use armgen_codegen::kinds::Scalar;
 use armgen_codegen::schedule::Options;
 use armgen_codegen::source::Source;
 use armgen_codegen::validate;
-use armgen_verify::bounds::two_digits;
-use armgen_verify::claims::Claims;
-use armgen_verify::errors::{Run, Seen, Subject};
-use armgen_verify::float::LANES;
-use armgen_verify::reader::Module;
+use armgen_verify::floats::bounds::two_digits;
+use armgen_verify::floats::errors::{Run, Seen, Subject};
+use armgen_verify::read::claims::Claims;
+use armgen_verify::read::reader::Module;
+use armgen_verify::values::float::LANES;
 
 /// Number of batches between progress messages.
 const PART: u64 = 1_250;

@@ -5,9 +5,9 @@ use armgen_codegen::kinds::Scalar;
 use armgen_codegen::program::Trig;
 use armgen_codegen::schedule::Options;
 use armgen_codegen::source::Source;
-use armgen_verify::claims::Claims;
-use armgen_verify::rounding::Trial;
-use armgen_verify::{bounds, checker::Effort, prepare};
+use armgen_verify::judge::rounding::Trial;
+use armgen_verify::read::claims::Claims;
+use armgen_verify::{floats::bounds, judge::checker::Effort, prepare};
 
 fn main() {
     for path in std::env::args().skip(1) {

@@ -1,18 +1,20 @@
 //! The certificate of a generated module, `robot.cert.json`: the verified facts and the exact values of all literals. With it, anybody
 //! can verify the module again without the generator.
 
+pub mod report;
+
 use std::collections::BTreeMap;
 
 use serde_derive::{Deserialize, Serialize};
 use serde_json::Value;
 
-use crate::bounds::two_digits;
-use crate::check::Check;
-use crate::claims::Claims;
-use crate::enclosure::bits_before_the_point;
-use crate::formula::definitions::{self, Definitions};
-use crate::reader::Module;
-use crate::report::{Exact, Report, Verdict};
+use crate::certificate::report::{Exact, Report, Verdict};
+use crate::floats::bounds::two_digits;
+use crate::read::claims::Claims;
+use crate::read::reader::Module;
+use crate::values::check::Check;
+use crate::values::enclosure::bits_before_the_point;
+use crate::values::formula::definitions::{self, Definitions};
 
 /// A certificate.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]

@@ -7,8 +7,8 @@
 //! ```
 //!
 //! The checker does not depend on the generator. Both read robot.yaml into a [`Manipulator`] with `armgen-description`; its numbers are taken
-//! over as text ([`formula`]). The exact values of literals come from a certificate, or from a caller that has the generator
-//! (`armgen-certify`), and need no trust ([`claims`]).
+//! over as text ([`values::formula`]). The exact values of literals come from a certificate, or from a caller that has the generator
+//! (`armgen-certify`), and need no trust ([`read::claims`]).
 //!
 //! ```no_run
 //! # fn main() -> Result<(), Box<dyn std::error::Error>> {
@@ -22,7 +22,7 @@
 //! ```
 //!
 //! What is not covered: that the compiler and libm do what they promise. How far rounding takes the functions
-//! from the equations is bounded a priori ([`bounds`](mod@bounds)) and at a state ([`companion`](mod@companion)), and measured ([`errors`]).
+//! from the equations is bounded a priori ([`floats::bounds`]) and at a state ([`floats::companion`]), and measured ([`floats::errors`]).
 
 // Tests of the checks leave them out one by one, so they need the caller with the generator around this very crate.
 #[cfg(test)]
@@ -32,69 +32,15 @@ pub(crate) mod certify;
 #[cfg(test)]
 extern crate self as armgen_verify;
 
-#[doc(hidden)]
-pub mod arithmetic;
-mod at_state;
-#[doc(hidden)]
-pub mod base;
-pub mod bounds;
 pub mod certificate;
-mod check;
-#[doc(hidden)]
-pub mod checker;
-#[doc(hidden)]
-pub mod claims;
-pub mod companion;
-#[doc(hidden)]
-pub mod constants;
-#[doc(hidden)]
-pub mod contract;
-#[doc(hidden)]
-pub mod divisors;
-#[doc(hidden)]
-pub mod element;
-#[doc(hidden)]
-pub mod enclosure;
-#[doc(hidden)]
-pub mod equations;
-pub mod errors;
-#[doc(hidden)]
-pub mod float;
-#[doc(hidden)]
-pub mod formula;
-#[doc(hidden)]
-pub mod identities;
-#[doc(hidden)]
-mod interval;
+pub mod floats;
 pub mod inverse_kinematics;
-mod marked;
-#[doc(hidden)]
-pub mod number;
-#[doc(hidden)]
-pub mod plain;
-#[doc(hidden)]
-pub mod program;
-#[doc(hidden)]
-pub mod ranges;
-#[doc(hidden)]
-pub mod reader;
-#[doc(hidden)]
-pub mod reference;
-pub mod report;
-#[doc(hidden)]
-pub mod residual;
-#[doc(hidden)]
-pub mod rounding;
-#[doc(hidden)]
-pub mod seed;
-#[doc(hidden)]
-pub mod signs;
-#[doc(hidden)]
-pub mod stated;
-#[doc(hidden)]
-pub mod stream;
+pub mod judge;
+pub mod read;
 pub mod test_kit;
+pub mod textbook;
 pub mod timing;
+pub mod values;
 
 use armgen_description::diagnostic::Colour;
 use armgen_description::kinds::Scalar;
@@ -104,17 +50,19 @@ use armgen_description::source::Source;
 use armgen_description::validate;
 use sha2::{Digest, Sha256};
 
+use certificate::report::{Report, Verdict};
 use certificate::Certificate;
-use check::{parallel_map, Check};
-use checker::{Checker, Effort};
-use claims::Claims;
-use enclosure::Float;
-use equations::parameters::Vector;
-use formula::Formula;
-use program::{JOINTS, MOTORS, NOMINAL_GRAVITY, TIPS};
-use reader::{Constant, Module, ModuleText};
-use report::{Report, Verdict};
-use rounding::Trial;
+use floats::bounds;
+use judge::checker::{Checker, Effort};
+use judge::rounding::Trial;
+use judge::{at_state, constants, identities, stated};
+use read::claims::Claims;
+use read::reader::{Constant, Module, ModuleText};
+use textbook::equations::parameters::Vector;
+use values::check::{parallel_map, Check};
+use values::enclosure::Float;
+use values::formula::Formula;
+use values::program::{JOINTS, MOTORS, NOMINAL_GRAVITY, TIPS};
 
 /// SHA-256 of a text, hexadecimal.
 pub fn hash(text: &str) -> String {

@@ -11,22 +11,22 @@ use std::fmt::Write;
 use armgen_description::manipulator::{Coordinate, Manipulator};
 use armgen_description::{language::Language, origin::Origin};
 
-use crate::arithmetic::wide::{wide_circle, Wide, WideArguments};
-use crate::arithmetic::Arithmetic;
-use crate::base;
-use crate::contract::{Promise, Sizes};
-use crate::enclosure::Float;
-use crate::equations::angles::Angles;
-use crate::equations::arm::formula;
-use crate::equations::parameters::Vector;
-use crate::equations::state::State;
-use crate::float::Arguments;
-use crate::formula::Formula;
-use crate::marked::{marked, GRAVITY, LOAD, PAYLOAD};
-use crate::program::{Argument, Inputs};
-use crate::reader::{parameters, Module};
-use crate::reference::{BaseParameters, Wanted, PROMISES};
-use crate::stream::Stream;
+use crate::read::marked::{marked, GRAVITY, LOAD, PAYLOAD};
+use crate::read::reader::{parameters, Module};
+use crate::textbook::base;
+use crate::textbook::equations::angles::Angles;
+use crate::textbook::equations::arm::formula;
+use crate::textbook::equations::parameters::Vector;
+use crate::textbook::equations::state::State;
+use crate::textbook::reference::{BaseParameters, Wanted, PROMISES};
+use crate::values::arithmetic::wide::{wide_circle, Wide, WideArguments};
+use crate::values::arithmetic::Arithmetic;
+use crate::values::contract::{Promise, Sizes};
+use crate::values::enclosure::Float;
+use crate::values::float::Arguments;
+use crate::values::formula::Formula;
+use crate::values::program::{Argument, Inputs};
+use crate::values::stream::Stream;
 
 /// Float arithmetic with 256 bits.
 struct Fine(Stream);
@@ -130,7 +130,7 @@ impl Kit {
             let why = if manipulator.is_massless() { ": nothing in the arm has mass or inertia" } else { "" };
             return Err(format!("a test file is for all functions, and the module has no `{name}`{why}"));
         }
-        let vector = Vector::of(manipulator, &crate::constants::parameter_names(module))?;
+        let vector = Vector::of(manipulator, &crate::judge::constants::parameter_names(module))?;
         let sizes = module.sizes();
         let mut fine = Fine(Stream::new(1));
         let mut stream = Stream::new(20_240_229);
@@ -266,7 +266,7 @@ const ROUNDING: f64 = 1.0 / (1u128 << 100) as f64 / (1u128 << 100) as f64;
 #[cfg(test)]
 mod tests {
     use super::{nearest, Wide};
-    use crate::element::Element;
+    use crate::values::element::Element;
 
     #[test]
     fn what_256_bits_leave_of_a_zero_is_zero() {

@@ -26,7 +26,7 @@ mod taylor;
 
 use armgen_description::manipulator::Manipulator;
 
-use crate::element::Element;
+use crate::values::element::Element;
 use bernstein::at_most_zero;
 use file::{Barrier, File, Kind, KINDS};
 use rows::{Checker, Functions};
@@ -132,7 +132,7 @@ pub fn check(manipulator: &Manipulator, text: &str) -> Result<Proved, String> {
             return Err(format!("not proved: the motion has another speed than {speed} at an end"));
         }
     }
-    let found = crate::check::parallel_map(&(0..file.laws.len()).collect::<Vec<_>>(), |i| {
+    let found = crate::values::check::parallel_map(&(0..file.laws.len()).collect::<Vec<_>>(), |i| {
         let functions = checker.functions(*i)?;
         checker.motion(*i, &functions)?;
         for barrier in &file.barriers[*i] {

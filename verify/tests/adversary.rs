@@ -12,9 +12,9 @@ use armgen_codegen::program::Trig;
 use armgen_codegen::schedule::Options;
 use armgen_codegen::source::Source;
 use armgen_verify::certificate::Certificate;
-use armgen_verify::checker::Effort;
-use armgen_verify::claims::Claims;
-use armgen_verify::reader::{Module, ModuleText};
+use armgen_verify::judge::checker::Effort;
+use armgen_verify::read::claims::Claims;
+use armgen_verify::read::reader::{Module, ModuleText};
 use armgen_verify::verify_with;
 
 struct Given {

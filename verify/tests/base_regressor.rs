@@ -6,17 +6,17 @@ use armgen_certify::{certify, verify};
 use armgen_codegen::kinds::Scalar;
 use armgen_codegen::manipulator;
 use armgen_codegen::validate;
-use armgen_verify::base::OwnParameters;
+use armgen_verify::certificate::report::Verdict;
 use armgen_verify::certificate::Certificate;
-use armgen_verify::checker::{Checker, Effort};
-use armgen_verify::claims::Claims;
-use armgen_verify::constants;
-use armgen_verify::element::Element;
-use armgen_verify::equations::parameters::{Standard, Vector};
-use armgen_verify::formula::{Formula, Rational};
-use armgen_verify::program::{Angle, Output, Program, Step};
-use armgen_verify::reader::{Function, Module};
-use armgen_verify::report::Verdict;
+use armgen_verify::judge::checker::{Checker, Effort};
+use armgen_verify::judge::constants;
+use armgen_verify::read::claims::Claims;
+use armgen_verify::read::reader::{Function, Module};
+use armgen_verify::textbook::base::OwnParameters;
+use armgen_verify::textbook::equations::parameters::{Standard, Vector};
+use armgen_verify::values::element::Element;
+use armgen_verify::values::formula::{Formula, Rational};
+use armgen_verify::values::program::{Angle, Output, Program, Step};
 
 /// A `base_regressor` under modification, with its parameters.
 #[derive(Clone)]

@@ -14,17 +14,17 @@ use armgen_codegen::manipulator::Manipulator;
 use armgen_codegen::schedule::{Options, Selection};
 use armgen_codegen::source::Source;
 use armgen_codegen::validate;
-use armgen_verify::arithmetic::wide::Wide;
-use armgen_verify::bounds::{domain_of, draw, notes, of, of_function, two_digits};
-use armgen_verify::claims::Claims;
-use armgen_verify::companion::{companion, Extent, LaneArguments, Table};
-use armgen_verify::element::Element;
-use armgen_verify::errors::{Run, Seen, Subject};
-use armgen_verify::float::LANES;
-use armgen_verify::program::Step;
-use armgen_verify::ranges::literal_errors;
-use armgen_verify::reader::Module;
-use armgen_verify::stream::Stream;
+use armgen_verify::floats::bounds::{domain_of, draw, notes, of, of_function, two_digits};
+use armgen_verify::floats::companion::{companion, Extent, LaneArguments, Table};
+use armgen_verify::floats::errors::{Run, Seen, Subject};
+use armgen_verify::read::claims::Claims;
+use armgen_verify::read::reader::Module;
+use armgen_verify::values::arithmetic::wide::Wide;
+use armgen_verify::values::element::Element;
+use armgen_verify::values::float::LANES;
+use armgen_verify::values::program::Step;
+use armgen_verify::values::ranges::literal_errors;
+use armgen_verify::values::stream::Stream;
 
 /// A robot of the project: its text, module, claims and description.
 fn robot(name: &str, scalar: Scalar) -> (String, Module, Claims, Manipulator) {
@@ -227,7 +227,7 @@ fn the_bound_of_inverse_kinematics_holds() {
     for (name, scalar) in [("puma560", Scalar::F64), ("scara", Scalar::F64), ("scara", Scalar::F32)] {
         let (text, module, claims, _) = robot(name, scalar);
         let companion = companion(&module, &claims, "use super::robot::*;").expect("a companion");
-        let companion = companion + &armgen_verify::companion::of_inverse_kinematics(&module, Extent::default());
+        let companion = companion + &armgen_verify::floats::companion::of_inverse_kinematics(&module, Extent::default());
         let main = include_str!("common/solution_bounds.rs.txt");
         let printed =
             run_of(&format!("solutions/{name}"), &[("main.rs", main), ("robot.rs", &text), ("robot_bounds.rs", &companion)]);

@@ -3,7 +3,7 @@
 use crate::common;
 
 use armgen_codegen::kinds::Scalar;
-use armgen_verify::reader::Module;
+use armgen_verify::read::reader::Module;
 
 fn page() -> String {
     std::fs::read_to_string(concat!(env!("CARGO_MANIFEST_DIR"), "/../docs/certificate.md")).expect("the page")

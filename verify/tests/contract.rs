@@ -1,7 +1,7 @@
 //! The checker's table of functions and the generator's catalogue are written independently and must agree.
 
 use armgen_codegen::catalogue::{self, Argument, Quantity};
-use armgen_verify::reference::PROMISES;
+use armgen_verify::textbook::reference::PROMISES;
 
 /// The Rust type of a result in the catalogue, without blanks, and the names of its fields.
 fn result(quantity: &Quantity) -> (String, Vec<String>) {
@@ -22,7 +22,7 @@ fn the_checker_and_the_catalogue_know_the_same_functions() {
     let declared: Vec<&str> = catalogue::quantities().map(|quantity| quantity.name).collect();
     let known: Vec<&str> = PROMISES.iter().map(|promise| promise.name).collect();
     assert_eq!(known, declared);
-    let sizes = armgen_verify::contract::Sizes { n: 2, joints: None, p: 3, b: 4, m: 5, gravity: false, tips: Vec::new() };
+    let sizes = armgen_verify::values::contract::Sizes { n: 2, joints: None, p: 3, b: 4, m: 5, gravity: false, tips: Vec::new() };
     for (promise, quantity) in PROMISES.iter().zip(catalogue::quantities()) {
         let name = promise.name;
         let arguments: Vec<&str> = quantity.arguments.iter().copied().map(Argument::name).collect();

@@ -6,8 +6,8 @@ use armgen_certify::{certify, verify};
 use armgen_codegen::kinds::Scalar;
 use armgen_codegen::schedule::Options;
 use armgen_codegen::source::Source;
-use armgen_verify::claims::Claims;
-use armgen_verify::reader::Module;
+use armgen_verify::read::claims::Claims;
+use armgen_verify::read::reader::Module;
 
 /// What is wrong first with a module of the SCARA that has another text in it, from a place on.
 fn fault(scalar: Scalar, from: &str, old: &str, new: &str) -> String {

@@ -8,8 +8,8 @@ use armgen_codegen::kinds::Scalar;
 use armgen_codegen::source::Source;
 use armgen_codegen::Generated;
 use armgen_verify::certificate::Certificate;
-use armgen_verify::checker::Effort;
-use armgen_verify::claims::Claims;
+use armgen_verify::judge::checker::Effort;
+use armgen_verify::read::claims::Claims;
 use armgen_verify::verify_with;
 
 const ARM: &str = include_str!("../../tests/data/mounted.yaml");

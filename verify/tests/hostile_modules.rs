@@ -5,9 +5,9 @@ use armgen_codegen::emit::Language;
 use armgen_codegen::pass::{Pass, Passes};
 use armgen_codegen::schedule::Options;
 use armgen_codegen::source::Source;
-use armgen_verify::checker::Effort;
-use armgen_verify::claims::Claims;
-use armgen_verify::reader::{matlab, Module, ModuleText, LONGEST};
+use armgen_verify::judge::checker::Effort;
+use armgen_verify::read::claims::Claims;
+use armgen_verify::read::reader::{matlab, Module, ModuleText, LONGEST};
 use armgen_verify::verify_with;
 
 const ROBOT: &str = include_str!("../../tests/robots/single_joint.yaml");

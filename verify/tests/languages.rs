@@ -28,7 +28,7 @@ use armgen_codegen::program::Trig;
 use armgen_codegen::schedule::{Options, Selection};
 use armgen_codegen::source::Source;
 use armgen_codegen::Generated;
-use armgen_verify::reader::{Module, ModuleText};
+use armgen_verify::read::reader::{Module, ModuleText};
 
 fn generated(source: &Source, scalar: Scalar, trig: Trig) -> Generated {
     #[allow(clippy::needless_update)]

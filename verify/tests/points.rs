@@ -6,13 +6,13 @@ use armgen_certify::{certify, verify};
 use armgen_codegen::kinds::Scalar;
 use armgen_codegen::source::Source;
 use armgen_codegen::validate;
+use armgen_verify::certificate::report::MOST_LOG2_ODDS;
 use armgen_verify::certificate::Certificate;
-use armgen_verify::checker::Effort;
-use armgen_verify::claims::Claims;
-use armgen_verify::reader::Module;
-use armgen_verify::report::MOST_LOG2_ODDS;
-use armgen_verify::stream::Stream;
-use armgen_verify::{seed, verify_with};
+use armgen_verify::judge::checker::Effort;
+use armgen_verify::read::claims::Claims;
+use armgen_verify::read::reader::Module;
+use armgen_verify::values::stream::Stream;
+use armgen_verify::{judge::seed, verify_with};
 
 /// The first bits of the points for a text.
 fn bits(source: &Source, text: &str, claims: &Claims) -> u64 {

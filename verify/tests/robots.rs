@@ -11,9 +11,9 @@ use armgen_codegen::program::Trig;
 use armgen_codegen::schedule::{Options, Selection};
 use armgen_codegen::source::Source;
 use armgen_verify::certificate::Certificate;
-use armgen_verify::checker::Effort;
-use armgen_verify::claims::Claims;
-use armgen_verify::formula::Rational;
+use armgen_verify::judge::checker::Effort;
+use armgen_verify::read::claims::Claims;
+use armgen_verify::values::formula::Rational;
 use armgen_verify::verify_with;
 use dashu_int::UBig;
 

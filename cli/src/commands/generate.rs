@@ -17,7 +17,7 @@ use armgen_codegen::{Generated, Solver};
 use armgen_texts::module::{self, Output};
 use armgen_texts::rows;
 use armgen_verify::certificate::Certificate;
-use armgen_verify::reader::ModuleText;
+use armgen_verify::read::reader::ModuleText;
 
 use super::package::{Manifest, Package};
 use super::verify::{certificate_beside, with_spinner};

@@ -9,10 +9,10 @@ use std::time::Duration;
 use armgen_codegen::emit::{camel, Language, Origin};
 use armgen_codegen::source::Source;
 use armgen_identify::certificate as identification;
+use armgen_verify::certificate::report::Report;
 use armgen_verify::certificate::Certificate;
 use armgen_verify::inverse_kinematics;
-use armgen_verify::reader::{matlab, options_of, ModuleText};
-use armgen_verify::report::Report;
+use armgen_verify::read::reader::{matlab, options_of, ModuleText};
 use armgen_verify::timing;
 use indicatif::{ProgressBar, ProgressStyle};
 

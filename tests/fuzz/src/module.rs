@@ -6,8 +6,8 @@ use std::sync::OnceLock;
 
 use armgen_codegen::schedule::Options;
 use armgen_codegen::source::Source;
-use armgen_verify::checker::Effort;
-use armgen_verify::claims::Claims;
+use armgen_verify::judge::checker::Effort;
+use armgen_verify::read::claims::Claims;
 
 struct Given {
     source: Source,

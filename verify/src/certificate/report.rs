@@ -2,10 +2,10 @@
 
 use std::fmt;
 
-use crate::bounds::Bound;
-use crate::check::Check;
-use crate::formula::Formula;
-use crate::ranges::Domain;
+use crate::floats::bounds::Bound;
+use crate::values::check::Check;
+use crate::values::formula::Formula;
+use crate::values::ranges::Domain;
 
 /// Reasons why a correct function is unusable in floats.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -68,7 +68,7 @@ pub struct FunctionReport {
     pub literals: Vec<Exact>,
     /// Bound on the distance of its entries from the exact ones over the box, if it equals the equations.
     pub bound: Option<Bound>,
-    /// The reason why it is unusable in floats although it equals the equations, if any ([`mod@crate::rounding`]).
+    /// The reason why it is unusable in floats although it equals the equations, if any ([`mod@crate::judge::rounding`]).
     pub unfit: Option<Unfit>,
 }
 

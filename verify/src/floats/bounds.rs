@@ -1,7 +1,7 @@
 //! A-priori error bounds: how far rounding can take the entries of a function from the exact ones, anywhere in a box of arguments.
 //!
 //! Every step has an interval that its exact value cannot leave and a bound of its error; both follow from those of its operands, by interval
-//! arithmetic and by the rules of [`mod@crate::companion`] with the largest sizes in place of the values:
+//! arithmetic and by the rules of [`mod@crate::floats::companion`] with the largest sizes in place of the values:
 //!
 //! ```text
 //! |fl(x + y) - (x* + y*)| ≤ e_x + e_y + u (|x + y|max + e_x + e_y)          and so on
@@ -20,18 +20,18 @@ use armgen_description::kinds::{JointKind, ParameterId};
 use armgen_description::manipulator::{Coordinate, Manipulator};
 use armgen_description::parallel::parallel_map;
 
-use crate::arithmetic::wide::Wide;
-use crate::claims::Claims;
-use crate::divisors::undivided_operands;
-use crate::enclosure::Float;
-use crate::equations::arm::formula;
-use crate::float::{Arguments, Lanes, LANES};
-use crate::formula::Formula;
-use crate::program::Program;
-use crate::ranges::{literal_errors, ranges, worst, Domain};
-use crate::reader::{Constant, Module};
-use crate::residual::{residual, Equations, Residual};
-use crate::stream::Stream;
+use crate::floats::residual::{residual, Equations, Residual};
+use crate::read::claims::Claims;
+use crate::read::reader::{Constant, Module};
+use crate::textbook::equations::arm::formula;
+use crate::values::arithmetic::wide::Wide;
+use crate::values::divisors::undivided_operands;
+use crate::values::enclosure::Float;
+use crate::values::float::{Arguments, Lanes, LANES};
+use crate::values::formula::Formula;
+use crate::values::program::Program;
+use crate::values::ranges::{literal_errors, ranges, worst, Domain};
+use crate::values::stream::Stream;
 
 /// A bound over a domain.
 #[derive(Clone, Debug, PartialEq)]

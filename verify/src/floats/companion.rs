@@ -20,14 +20,14 @@
 
 use std::fmt::Write;
 
-use crate::claims::Claims;
-use crate::contract::{of_module, Promise};
-use crate::enclosure::Float;
-use crate::float::{Arguments, LANES};
-use crate::marked::{marked, FUSED, GRAVITY, LOAD, STRIBECK};
-use crate::program::{Angle, Argument, Program, Step};
-use crate::ranges::{is_power_of_two, literal_errors};
-use crate::reader::Module;
+use crate::read::claims::Claims;
+use crate::read::marked::{marked, FUSED, GRAVITY, LOAD, STRIBECK};
+use crate::read::reader::Module;
+use crate::values::contract::{of_module, Promise};
+use crate::values::enclosure::Float;
+use crate::values::float::{Arguments, LANES};
+use crate::values::program::{Angle, Argument, Program, Step};
+use crate::values::ranges::{is_power_of_two, literal_errors};
 
 /// The text taken in, as a module of this crate in each scalar: the same lines that companions have.
 macro_rules! face {
@@ -41,10 +41,10 @@ macro_rules! face {
             include!("companion/template.rs");
             include!("companion/stribeck.rs");
             include!("companion/sign.rs");
-            include!("reader/sines/stribeck.rs");
+            include!("../read/reader/sines/stribeck.rs");
             include!("companion/lanes.rs");
 
-            use crate::float::{Arguments, LANES};
+            use crate::values::float::{Arguments, LANES};
 
             /// A program as a table of any length.
             pub(super) fn run(
@@ -84,8 +84,8 @@ macro_rules! face {
                 Angle { terms, turn: sum.turn as Real, off: sum.off as Real }
             }
 
-            fn name(argument: crate::program::Argument) -> Name {
-                use crate::program::Argument;
+            fn name(argument: crate::values::program::Argument) -> Name {
+                use crate::values::program::Argument;
                 match argument {
                     Argument::Pi => Name::Pi,
                     Argument::Q => Name::Q,
@@ -334,7 +334,7 @@ pub fn companion(module: &Module, claims: &Claims, import: &str) -> Result<Strin
     let (fades, loaded) = (has(|step| matches!(step, Step::Stribeck(..))), has(|step| matches!(step, Step::SignOf(_))));
     let fused = has(|step| matches!(step, Step::Product(..)));
     let parts = [
-        (include_str!("reader/sines/stribeck.rs"), fades),
+        (include_str!("../read/reader/sines/stribeck.rs"), fades),
         (include_str!("companion/stribeck.rs"), fades),
         (include_str!("companion/sign.rs"), loaded),
     ];

@@ -10,19 +10,19 @@
 
 use armgen_description::manipulator::Manipulator;
 
-use crate::arithmetic::twofold::{self, Circle, Pair, Twofold, TwofoldArguments};
-use crate::arithmetic::wide::{Wide, WideArguments};
-use crate::bounds::{corner, domain_of, draw, of_function, Bound};
-use crate::claims::Claims;
-use crate::companion::{LaneArguments, LaneTable, Table};
-use crate::element::Element;
-use crate::enclosure::Float;
-use crate::float::{Arguments, LANES};
-use crate::program::Program;
-use crate::ranges::{literal_errors, Domain};
-use crate::reader::{Function, Module};
-use crate::residual::{Equations, Residual};
-use crate::stream::Stream;
+use crate::floats::bounds::{corner, domain_of, draw, of_function, Bound};
+use crate::floats::companion::{LaneArguments, LaneTable, Table};
+use crate::floats::residual::{Equations, Residual};
+use crate::read::claims::Claims;
+use crate::read::reader::{Function, Module};
+use crate::values::arithmetic::twofold::{self, Circle, Pair, Twofold, TwofoldArguments};
+use crate::values::arithmetic::wide::{Wide, WideArguments};
+use crate::values::element::Element;
+use crate::values::enclosure::Float;
+use crate::values::float::{Arguments, LANES};
+use crate::values::program::Program;
+use crate::values::ranges::{literal_errors, Domain};
+use crate::values::stream::Stream;
 
 /// Measurements of a function; sizes are those of the largest entry.
 #[derive(Clone, Debug, PartialEq)]

@@ -21,15 +21,15 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use crate::arithmetic::twofold::{self, Pair, Twofold, TwofoldArguments};
-use crate::arithmetic::wide::{Wide, WideArguments};
-use crate::claims::Claims;
-use crate::element::Element;
-use crate::enclosure::Float;
-use crate::float::Arguments;
-use crate::program::{Argument, Program, Step};
-use crate::ranges::Range;
-use crate::reader::Module;
+use crate::read::claims::Claims;
+use crate::read::reader::Module;
+use crate::values::arithmetic::twofold::{self, Pair, Twofold, TwofoldArguments};
+use crate::values::arithmetic::wide::{Wide, WideArguments};
+use crate::values::element::Element;
+use crate::values::enclosure::Float;
+use crate::values::float::Arguments;
+use crate::values::program::{Argument, Program, Step};
+use crate::values::ranges::Range;
 
 /// The returned accelerations x are exact for torques with an error of at most `constant + factor max|x|`, if all pivots are positive.
 #[derive(Clone, Copy, Debug, PartialEq)]

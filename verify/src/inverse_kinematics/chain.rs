@@ -4,9 +4,9 @@ use armgen_description::kinds::Target;
 use armgen_description::manipulator::Manipulator;
 
 use super::modular::{Frame, Modulus};
-use crate::arithmetic::prime::{Prime, Residue};
-use crate::arithmetic::Arithmetic;
-use crate::equations::arm::{self, Arm};
+use crate::textbook::equations::arm::{self, Arm};
+use crate::values::arithmetic::prime::{Prime, Residue};
+use crate::values::arithmetic::Arithmetic;
 
 /// Whether the target is a position and a direction.
 pub(super) fn is_pointing(manipulator: &Manipulator) -> bool {

@@ -8,9 +8,9 @@ use armgen_description::manipulator::Manipulator;
 
 use super::is_nearest;
 use super::text::Text;
-use crate::check::Check;
-use crate::equations::arm::formula;
-use crate::formula::Formula;
+use crate::textbook::equations::arm::formula;
+use crate::values::check::Check;
+use crate::values::formula::Formula;
 
 /// Checks the constants of coordinates; returns their exact values.
 ///

@@ -8,11 +8,11 @@ use super::modular::{Frame, Modulus};
 use super::points::{posture, Constants};
 use super::quotient::{Quotient, Step};
 use super::sturm::{residues_of, roots, Residues, Roots};
-use crate::equations::pose::Pose;
-use crate::equations::state::State;
-use crate::float::Arguments;
-use crate::formula::{Formula, Rational};
-use crate::stream::Stream;
+use crate::textbook::equations::pose::Pose;
+use crate::textbook::equations::state::State;
+use crate::values::float::Arguments;
+use crate::values::formula::{Formula, Rational};
+use crate::values::stream::Stream;
 use armgen_description::manipulator::Manipulator;
 
 /// A traversal of the loop: its first joint and its direction.
@@ -206,7 +206,7 @@ impl RationalPose {
         let away = number(Rational::from(self.away));
         std::array::from_fn(|i| {
             std::array::from_fn(|j| match j {
-                3 => crate::element::Element::plus(&tool.origin[i], &away),
+                3 => crate::values::element::Element::plus(&tool.origin[i], &away),
                 _ => tool.rotation[i][j].clone(),
             })
         })

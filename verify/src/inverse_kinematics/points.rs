@@ -8,13 +8,13 @@ use armgen_description::manipulator::{Body, Manipulator};
 use super::chain::Chain;
 use super::modular::{Frame, Modulus};
 use super::text::{Arrangement, Given};
-use crate::arithmetic::plain::Plain;
-use crate::arithmetic::prime::Prime;
-use crate::arithmetic::roots::dependent;
-use crate::arithmetic::Arithmetic;
-use crate::equations::arm::Arm;
-use crate::formula::{Atoms, Dependent, Formula};
-use crate::stream::Stream;
+use crate::textbook::equations::arm::Arm;
+use crate::values::arithmetic::plain::Plain;
+use crate::values::arithmetic::prime::Prime;
+use crate::values::arithmetic::roots::dependent;
+use crate::values::arithmetic::Arithmetic;
+use crate::values::formula::{Atoms, Dependent, Formula};
+use crate::values::stream::Stream;
 
 /// The description's numbers as formulas, with their roots and angles.
 pub(super) struct Constants {

@@ -68,7 +68,7 @@ pub(super) enum Construction {
 /// The text of a module.
 #[derive(Clone, Debug)]
 pub(super) struct Text {
-    pub(super) real: crate::enclosure::Float,
+    pub(super) real: crate::values::enclosure::Float,
     pub(super) dof: usize,
     pub(super) most: usize,
     pub(super) branches: Vec<String>,
@@ -476,8 +476,8 @@ impl Text {
         }
         let blocks = taken(blocks)?;
         let real = match (blocks.contains(&"scalar_f64"), blocks.contains(&"scalar_f32")) {
-            (true, false) => crate::enclosure::Float::F64,
-            (false, true) => crate::enclosure::Float::F32,
+            (true, false) => crate::values::enclosure::Float::F64,
+            (false, true) => crate::values::enclosure::Float::F32,
             _ => return Err("there is not one block of the scalar".into()),
         };
         // The closing bracket of the function.

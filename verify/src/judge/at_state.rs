@@ -2,20 +2,20 @@
 
 use armgen_description::manipulator::{Coordinate, Manipulator};
 
-use crate::arithmetic::Arithmetic;
-use crate::base;
-use crate::bounds;
-use crate::checker::Checker;
-use crate::contract::Promise;
-use crate::enclosure::Float;
-use crate::equations::angles::Angles;
-use crate::equations::state::State;
-use crate::float::Arguments;
-use crate::formula::Formula;
-use crate::program::Argument;
-use crate::reader::Module;
-use crate::reference::{BaseParameters, Wanted};
-use crate::report::{FunctionReport, Verdict};
+use crate::certificate::report::{FunctionReport, Verdict};
+use crate::floats::bounds;
+use crate::judge::checker::Checker;
+use crate::read::reader::Module;
+use crate::textbook::base;
+use crate::textbook::equations::angles::Angles;
+use crate::textbook::equations::state::State;
+use crate::textbook::reference::{BaseParameters, Wanted};
+use crate::values::arithmetic::Arithmetic;
+use crate::values::contract::Promise;
+use crate::values::enclosure::Float;
+use crate::values::float::Arguments;
+use crate::values::formula::Formula;
+use crate::values::program::Argument;
 
 /// Floats with a smaller relative difference count as equal.
 const AGREE: f64 = 1e-6;

@@ -6,31 +6,31 @@ use std::sync::{Mutex, PoisonError};
 
 use armgen_description::manipulator::{Manipulator, Tip};
 
-use crate::arithmetic::degree::{log2_odds, Degree, Degrees};
-use crate::arithmetic::prime::Prime;
-use crate::arithmetic::roots::dependent;
-use crate::arithmetic::tower::Tower;
-use crate::arithmetic::Arithmetic;
-use crate::base::{dependent_column, OwnParameters, Samples, FITTED};
-use crate::check::{parallel_map, Check};
-use crate::claims::{Claims, Resolved};
-use crate::contract::{Promise, Sizes};
-use crate::divisors::{is_needed, needed};
-use crate::element::Element;
-use crate::enclosure::Float;
-use crate::equations::angles::Angles;
-use crate::equations::arm::{formula, Arm};
-use crate::equations::parameters::Vector;
-use crate::equations::state::State;
-use crate::formula::{Atoms, Dependent, Formula};
-use crate::number::{Erased, Member, Number, Numbers};
-use crate::program::{Limits, Program, Step};
-use crate::reader::{Function, Module};
-use crate::reference::{BaseParameters, Reference, Values, Wanted, BASE_REGRESSOR};
-use crate::report::{Exact, FunctionReport, Verdict, MOST_LOG2_ODDS};
-use crate::seed;
-use crate::signs;
-use crate::stream::Stream;
+use crate::certificate::report::{Exact, FunctionReport, Verdict, MOST_LOG2_ODDS};
+use crate::judge::seed;
+use crate::read::claims::{Claims, Resolved};
+use crate::read::reader::{Function, Module};
+use crate::textbook::base::{dependent_column, OwnParameters, Samples, FITTED};
+use crate::textbook::equations::angles::Angles;
+use crate::textbook::equations::arm::{formula, Arm};
+use crate::textbook::equations::parameters::Vector;
+use crate::textbook::equations::state::State;
+use crate::textbook::reference::{BaseParameters, Reference, Values, Wanted, BASE_REGRESSOR};
+use crate::values::arithmetic::degree::{log2_odds, Degree, Degrees};
+use crate::values::arithmetic::prime::Prime;
+use crate::values::arithmetic::roots::dependent;
+use crate::values::arithmetic::tower::Tower;
+use crate::values::arithmetic::Arithmetic;
+use crate::values::check::{parallel_map, Check};
+use crate::values::contract::{Promise, Sizes};
+use crate::values::divisors::{is_needed, needed};
+use crate::values::element::Element;
+use crate::values::enclosure::Float;
+use crate::values::formula::{Atoms, Dependent, Formula};
+use crate::values::number::{Erased, Member, Number, Numbers};
+use crate::values::program::{Limits, Program, Step};
+use crate::values::signs;
+use crate::values::stream::Stream;
 
 /// The function that has a meaning up to a constant where parameters are base parameters.
 const ENERGY_WITH: &str = "potential_energy_with";
@@ -44,7 +44,7 @@ pub struct Effort {
     pub points: usize,
     /// Rational points.
     pub exact_points: usize,
-    /// Other points for other numbers; all else that they follow from is what is verified ([`mod@crate::seed`]).
+    /// Other points for other numbers; all else that they follow from is what is verified ([`mod@crate::judge::seed`]).
     pub seed: u64,
 }
 

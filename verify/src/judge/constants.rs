@@ -6,20 +6,20 @@ use armgen_description::exact::Number;
 use armgen_description::kinds::{JointKind, ParameterId};
 use armgen_description::manipulator::{JointVariable, Limits, Manipulator};
 
-use crate::arithmetic::prime::Residue;
-use crate::base::OwnParameters;
-use crate::check::Check;
-use crate::checker::Checker;
-use crate::claims::Claims;
-use crate::element::Element;
-use crate::enclosure::Float;
-use crate::equations::angles::Angles;
-use crate::equations::arm::{formula, Arm};
-use crate::equations::parameters::{self, Standard, Vector};
-use crate::formula::Formula;
-use crate::program::{Literal, JOINTS, MOTORS, NOMINAL_GRAVITY, TIPS};
-use crate::reader::{Constant, Module};
-use crate::report::{ConstantReport, Exact, Verdict};
+use crate::certificate::report::{ConstantReport, Exact, Verdict};
+use crate::judge::checker::Checker;
+use crate::read::claims::Claims;
+use crate::read::reader::{Constant, Module};
+use crate::textbook::base::OwnParameters;
+use crate::textbook::equations::angles::Angles;
+use crate::textbook::equations::arm::{formula, Arm};
+use crate::textbook::equations::parameters::{self, Standard, Vector};
+use crate::values::arithmetic::prime::Residue;
+use crate::values::check::Check;
+use crate::values::element::Element;
+use crate::values::enclosure::Float;
+use crate::values::formula::Formula;
+use crate::values::program::{Literal, JOINTS, MOTORS, NOMINAL_GRAVITY, TIPS};
 
 /// Tells which angles of the description the functions of a module compute. A function that takes the sine of another sum is refused.
 pub fn name_angles(module: &mut Module, manipulator: &Manipulator, claims: &Claims) {
@@ -123,7 +123,7 @@ fn claimed(constant: &str, length: usize, claims: &Claims, module: &Module) -> O
     let Constant::Array(entries) = module.constants.get(constant)? else { return None };
     let literal = |entry: &Constant| match entry {
         Constant::Number(negative, Literal { text, .. }) => {
-            let size = crate::formula::parse::decimal(text).ok()?;
+            let size = crate::values::formula::parse::decimal(text).ok()?;
             Some(if *negative { size.negated() } else { size })
         }
         _ => None,

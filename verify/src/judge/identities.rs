@@ -1,18 +1,18 @@
 //! Identities among the functions of a module, independent of the checker's own equations. Where an identity needs a derivative, the emitted
 //! functions run in dual numbers.
 
-use crate::arithmetic::dual::Dual;
-use crate::arithmetic::prime::{Prime, Residue};
-use crate::check::parallel_map;
-use crate::checker::{with_parameters, Checker, Point};
-use crate::element::Element;
-use crate::equations::parameters::Vector;
-use crate::equations::state::State;
-use crate::formula::Formula;
-use crate::program::Program;
-use crate::reader::Module;
-use crate::reference::{BASE_REGRESSOR, PROMISES};
-use crate::report::{FunctionReport, IdentityReport};
+use crate::certificate::report::{FunctionReport, IdentityReport};
+use crate::judge::checker::{with_parameters, Checker, Point};
+use crate::read::reader::Module;
+use crate::textbook::equations::parameters::Vector;
+use crate::textbook::equations::state::State;
+use crate::textbook::reference::{BASE_REGRESSOR, PROMISES};
+use crate::values::arithmetic::dual::Dual;
+use crate::values::arithmetic::prime::{Prime, Residue};
+use crate::values::check::parallel_map;
+use crate::values::element::Element;
+use crate::values::formula::Formula;
+use crate::values::program::Program;
 
 /// The functions of a module with the exact values of their literals, at one point.
 struct Running<'a> {

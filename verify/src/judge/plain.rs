@@ -1,28 +1,28 @@
 //! How well floats can compute the equations: errors of a plain program of them, entry by entry, at states and over boxes.
 //!
-//! The program is that of [`reference`](mod@crate::reference), in double precision. At states it is run in floats with running errors
-//! ([`running`](mod@crate::arithmetic::running)); over a box in intervals with the largest errors of their values, by the rules of
-//! [`mod@crate::ranges`]. What divides by an interval that 0 lies in has no bound there. Arguments are rounded once: no one has them better.
+//! The program is that of [`reference`](mod@crate::textbook::reference), in double precision. At states it is run in floats with running errors
+//! ([`running`](mod@crate::values::arithmetic::running)); over a box in intervals with the largest errors of their values, by the rules of
+//! [`mod@crate::values::ranges`]. What divides by an interval that 0 lies in has no bound there. Arguments are rounded once: no one has them better.
 //! Unit vectors of the description are rounded at their length, so that axes apart by pi to sixteen digits turn by a rounding, not by a part of it.
 
 use std::collections::BTreeMap;
 
 use armgen_description::manipulator::{Coordinate, Manipulator};
 
-use crate::arithmetic::running::{Running, RunningNumbers};
-use crate::arithmetic::Arithmetic;
-use crate::base::{self, OwnParameters};
-use crate::element::Element;
-use crate::enclosure::Float;
-use crate::equations::angles::Angles;
-use crate::equations::arm::formula;
-use crate::equations::parameters::Vector;
-use crate::equations::state::State;
-use crate::float::{stribeck, stribeck_error, Arguments, LANES};
-use crate::formula::Formula;
-use crate::number::Member;
-use crate::ranges::{Domain, Range};
-use crate::reference::{BaseParameters, Values, Wanted};
+use crate::textbook::base::{self, OwnParameters};
+use crate::textbook::equations::angles::Angles;
+use crate::textbook::equations::arm::formula;
+use crate::textbook::equations::parameters::Vector;
+use crate::textbook::equations::state::State;
+use crate::textbook::reference::{BaseParameters, Values, Wanted};
+use crate::values::arithmetic::running::{Running, RunningNumbers};
+use crate::values::arithmetic::Arithmetic;
+use crate::values::element::Element;
+use crate::values::enclosure::Float;
+use crate::values::float::{stribeck, stribeck_error, Arguments, LANES};
+use crate::values::formula::Formula;
+use crate::values::number::Member;
+use crate::values::ranges::{Domain, Range};
 
 /// What a plain program makes of an entry.
 #[derive(Clone, Copy, Debug)]
@@ -155,7 +155,8 @@ impl Arithmetic for Ranges {
 
     fn constant(&self, formula: &Formula) -> Option<Range> {
         let value = Float::F64.nearest(formula)?;
-        let exact = formula.as_rational().is_some_and(|e| crate::formula::Rational::try_from(value).is_ok_and(|f| f == *e));
+        let exact =
+            formula.as_rational().is_some_and(|e| crate::values::formula::Rational::try_from(value).is_ok_and(|f| f == *e));
         let error = if exact { 0.0 } else { Float::F64.unit() * value.abs() };
         Some(Range { low: value - error, high: value + error, error })
     }

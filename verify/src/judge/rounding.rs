@@ -2,7 +2,7 @@
 //! as `x + 1e17 - 1e17` is.
 //!
 //! There is one rule. With u the unit roundoff, n the number of joints, e the proved bound of an entry as it follows from the text, E that of a
-//! plain program of the equations ([`mod@crate::plain`]), and T the size of the largest entry of its kind:
+//! plain program of the equations ([`mod@crate::judge::plain`]), and T the size of the largest entry of its kind:
 //!
 //! ```text
 //! e ≤ 2^(4 + n) (E + u T)
@@ -32,22 +32,22 @@ use std::collections::BTreeMap;
 
 use armgen_description::kinds::JointKind;
 
-use crate::bounds::{corner, draw, symmetric, two_digits};
-use crate::check::Check;
-use crate::checker::Checker;
-use crate::companion::{LaneArguments, LaneTable, Table};
-use crate::contract::{tip_of, Length, Promise};
-use crate::divisors::undivided_operands;
-use crate::enclosure::Float;
-use crate::equations::parameters::{units, Unit};
-use crate::float::{Arguments, LANES};
-use crate::formula::Formula;
-use crate::plain::{Entry, Plain};
-use crate::program::{Output, Program};
-use crate::ranges::{literal_errors, ranges, worst, Domain};
-use crate::reader::Module;
-use crate::report::Unfit;
-use crate::stream::Stream;
+use crate::certificate::report::Unfit;
+use crate::floats::bounds::{corner, draw, symmetric, two_digits};
+use crate::floats::companion::{LaneArguments, LaneTable, Table};
+use crate::judge::checker::Checker;
+use crate::judge::plain::{Entry, Plain};
+use crate::read::reader::Module;
+use crate::textbook::equations::parameters::{units, Unit};
+use crate::values::check::Check;
+use crate::values::contract::{tip_of, Length, Promise};
+use crate::values::divisors::undivided_operands;
+use crate::values::enclosure::Float;
+use crate::values::float::{Arguments, LANES};
+use crate::values::formula::Formula;
+use crate::values::program::{Output, Program};
+use crate::values::ranges::{literal_errors, ranges, worst, Domain};
+use crate::values::stream::Stream;
 
 /// What the rule may allow of the largest entry of a kind at a state that counts.
 const COUNTS: f64 = 1.0 / 256.0;

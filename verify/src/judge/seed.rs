@@ -6,19 +6,19 @@
 //! summands and factors, or claims without a literal. A change of these does not give another attempt.
 //!
 //! The remaining option, another equally wrong sum, costs reading and running per attempt. 2^40 attempts at odds of 2^-168 each leave 2^-128
-//! ([`crate::report::MOST_LOG2_ODDS`]).
+//! ([`crate::certificate::report::MOST_LOG2_ODDS`]).
 
 use armgen_description::exact::{Number, Polynomial};
 use armgen_description::manipulator::{Body, Coupling, Joint, Manipulator, PlacedBody, Placement, Pose, RegressorChoice};
 use sha2::{Digest, Sha256};
 
-use crate::claims::{Claims, Resolved};
-use crate::enclosure::Float;
-use crate::equations::arm::formula;
-use crate::formula::{definitions, Formula};
-use crate::program::{Angle, Program, Step};
-use crate::reader::Module;
-use crate::stream::Stream;
+use crate::read::claims::{Claims, Resolved};
+use crate::read::reader::Module;
+use crate::textbook::equations::arm::formula;
+use crate::values::enclosure::Float;
+use crate::values::formula::{definitions, Formula};
+use crate::values::program::{Angle, Program, Step};
+use crate::values::stream::Stream;
 
 /// A SHA-256 hash.
 type Hash = [u8; 32];

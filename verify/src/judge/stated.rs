@@ -5,11 +5,11 @@
 
 use std::collections::BTreeMap;
 
-use crate::bounds::{self, Bound};
-use crate::check::Check;
-use crate::program::{Program, Step};
-use crate::reader::{is_fact, is_hidden, Function, Module, FACTS};
-use crate::report::Report;
+use crate::certificate::report::Report;
+use crate::floats::bounds::{self, Bound};
+use crate::read::reader::{is_fact, is_hidden, Function, Module, FACTS};
+use crate::values::check::Check;
+use crate::values::program::{Program, Step};
 
 /// Number of hash digits of the description in the head.
 const DIGITS: usize = 16;

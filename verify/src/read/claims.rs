@@ -9,13 +9,13 @@ use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
 use armgen_description::exact::{self, Number};
 
-use crate::element::Element;
-use crate::enclosure::{bits_before_the_point, Float};
-use crate::formula::definitions::Definitions;
-use crate::formula::parse::decimal;
-use crate::formula::{Formula, Rational};
-use crate::program::{Literal, Program, Step};
-use crate::reader::Module;
+use crate::read::reader::Module;
+use crate::values::element::Element;
+use crate::values::enclosure::{bits_before_the_point, Float};
+use crate::values::formula::definitions::Definitions;
+use crate::values::formula::parse::decimal;
+use crate::values::formula::{Formula, Rational};
+use crate::values::program::{Literal, Program, Step};
 
 /// Claimed constants by function (or constant) name, in the order of the text if known.
 #[derive(Clone, Debug, Default, PartialEq)]

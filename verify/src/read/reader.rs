@@ -1,7 +1,7 @@
 //! Reads an emitted module: constants as values, functions as straight-line programs.
 //!
 //! The reader accepts only a fixed grammar, with its own lexer and parser; it cannot skip unknown text. Except for the bodies of functions, it
-//! compares all tokens with the texts of an emitted module (`items`, `sines`, signatures from [`contract`](crate::contract)). The grammar of
+//! compares all tokens with the texts of an emitted module (`items`, `sines`, signatures from [`contract`](crate::values::contract)). The grammar of
 //! bodies is in `body`, of constants in `constant`, of documentation in `documentation`, and of characters in `lexer`.
 //! `docs/certificate.md` has the complete grammar.
 
@@ -24,10 +24,10 @@ use std::sync::atomic::AtomicUsize;
 
 use armgen_description::language::Language;
 
-use crate::check::{parallel_map, Check};
-use crate::contract::Sizes;
-use crate::enclosure::Float;
-use crate::program::{Program, JOINTS, NOMINAL_GRAVITY, TIPS};
+use crate::values::check::{parallel_map, Check};
+use crate::values::contract::Sizes;
+use crate::values::enclosure::Float;
+use crate::values::program::{Program, JOINTS, NOMINAL_GRAVITY, TIPS};
 use body::Shared;
 pub(crate) use c::in_the_name_of;
 pub use constant::Constant;

@@ -5,12 +5,12 @@ use std::fmt::Write;
 use armgen_description::{language::Language, origin::Origin};
 
 use super::{list, Kit, Value};
-use crate::contract::Length;
-use crate::enclosure::Float;
-use crate::float::Arguments;
-use crate::marked::{marked, LOAD, PAYLOAD};
-use crate::program::Argument;
-use crate::reader::{camel, in_the_name_of};
+use crate::read::marked::{marked, LOAD, PAYLOAD};
+use crate::read::reader::{camel, in_the_name_of};
+use crate::values::contract::Length;
+use crate::values::enclosure::Float;
+use crate::values::float::Arguments;
+use crate::values::program::Argument;
 
 /// The template of a language, after its line BEGIN; `sign` begins a comment.
 fn template(text: &'static str, sign: &str, kit: &Kit) -> String {

@@ -25,20 +25,20 @@ use std::collections::BTreeMap;
 
 use armgen_description::manipulator::Manipulator;
 
-use crate::arithmetic::degree::Degree;
-use crate::arithmetic::Arithmetic;
-use crate::element::Element;
-use crate::equations::angles::Angles;
-use crate::equations::arm::Arm;
-use crate::equations::lagrange::{friction, spring_torques};
-use crate::equations::newton_euler::{ArmMotion, Carrier, Motion};
-use crate::equations::parameters::{Standard, Vector};
-use crate::equations::pose::Pose;
-use crate::equations::state::State;
-use crate::formula::Formula;
-use crate::number::{Erased, Member, Numbers};
-use crate::program::{Argument, Program, Step};
-use crate::reference::{Reference, Values, Wanted, BASE_REGRESSOR};
+use crate::textbook::equations::angles::Angles;
+use crate::textbook::equations::arm::Arm;
+use crate::textbook::equations::lagrange::{friction, spring_torques};
+use crate::textbook::equations::newton_euler::{ArmMotion, Carrier, Motion};
+use crate::textbook::equations::parameters::{Standard, Vector};
+use crate::textbook::equations::pose::Pose;
+use crate::textbook::equations::state::State;
+use crate::textbook::reference::{Reference, Values, Wanted, BASE_REGRESSOR};
+use crate::values::arithmetic::degree::Degree;
+use crate::values::arithmetic::Arithmetic;
+use crate::values::element::Element;
+use crate::values::formula::Formula;
+use crate::values::number::{Erased, Member, Numbers};
+use crate::values::program::{Argument, Program, Step};
 
 /// The base parameters of a module: the standard parameters in their names, a flag for combined parameters, and their claimed values.
 #[derive(Clone, Debug, PartialEq)]

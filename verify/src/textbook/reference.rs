@@ -4,24 +4,24 @@ use std::collections::BTreeMap;
 
 use armgen_description::manipulator::Manipulator;
 
-use crate::arithmetic::dual::Dual;
-use crate::arithmetic::Arithmetic;
-use crate::contract::{Array, Length, Promise, Returned};
-use crate::divisors::{Matrix, Pivots};
-use crate::element::Element;
-use crate::equations::angles::Angles;
-use crate::equations::arm::{Arm, Frame, Tip};
-use crate::equations::lagrange::{
+use crate::textbook::equations::angles::Angles;
+use crate::textbook::equations::arm::{Arm, Frame, Tip};
+use crate::textbook::equations::lagrange::{
     accelerations, along_joints, coriolis_matrix, friction, gravity, has_load_friction, inertia_derivatives, inertia_matrix,
     load_friction, potential_energy, spring_torques, times_vector, Parts,
 };
-use crate::equations::newton_euler::{ArmMotion, Motion};
-use crate::equations::parameters::{
+use crate::textbook::equations::newton_euler::{ArmMotion, Motion};
+use crate::textbook::equations::parameters::{
     base_map, reference_torques, standard_columns, with_standard, KeptAlone, LinkFrames, Standard, Vector,
 };
-use crate::equations::pose::Pose;
-use crate::equations::state::State;
-use crate::equations::vector::{solve, Vector as Vector3};
+use crate::textbook::equations::pose::Pose;
+use crate::textbook::equations::state::State;
+use crate::textbook::equations::vector::{solve, Vector as Vector3};
+use crate::values::arithmetic::dual::Dual;
+use crate::values::arithmetic::Arithmetic;
+use crate::values::contract::{Array, Length, Promise, Returned};
+use crate::values::divisors::{Matrix, Pivots};
+use crate::values::element::Element;
 
 /// The function without an entry-by-entry comparison: its columns belong to the parameters that the module itself names.
 pub const BASE_REGRESSOR: &str = "base_regressor";

@@ -2,7 +2,7 @@
 
 use super::curve::Curve;
 use super::taylor::{Range, Taylor, TERMS};
-use crate::element::Element;
+use crate::values::element::Element;
 
 /// Halvings at most: parts of 2^-20.
 const DEEPEST: u32 = 20;

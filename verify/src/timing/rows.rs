@@ -6,13 +6,13 @@ use armgen_description::manipulator::{Joint, Manipulator};
 use super::curve::Curve;
 use super::file::{File, Kind, ROUNDING};
 use super::taylor::{Constants, Range, Taylor};
-use crate::element::Element;
-use crate::equations::arm::Arm;
-use crate::equations::lagrange::spring_torques;
-use crate::equations::newton_euler::{ArmMotion, Motion};
-use crate::equations::pose::Pose;
-use crate::equations::state::State;
-use crate::float::Arguments;
+use crate::textbook::equations::arm::Arm;
+use crate::textbook::equations::lagrange::spring_torques;
+use crate::textbook::equations::newton_euler::{ArmMotion, Motion};
+use crate::textbook::equations::pose::Pose;
+use crate::textbook::equations::state::State;
+use crate::values::element::Element;
+use crate::values::float::Arguments;
 
 /// A limit on a segment: m u + c x + v sqrt(x) + d <= 0, and a curve over dq² besides.
 pub(super) struct Row {

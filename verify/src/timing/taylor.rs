@@ -1,9 +1,9 @@
 //! Intervals of floats rounded outwards, and Taylor models over them: a polynomial in t from -1 to 1, and an interval for what it misses.
 
-use crate::arithmetic::Arithmetic;
-use crate::element::Element;
-use crate::enclosure::{enclose, sine_cosine_of};
-use crate::formula::{Formula, Rational};
+use crate::values::arithmetic::Arithmetic;
+use crate::values::element::Element;
+use crate::values::enclosure::{enclose, sine_cosine_of};
+use crate::values::formula::{Formula, Rational};
 
 /// The degree of the polynomials.
 pub(super) const ORDER: usize = 8;

@@ -23,8 +23,8 @@ pub mod tower;
 pub mod twofold;
 pub mod wide;
 
-use crate::element::Element;
-use crate::formula::Formula;
+use crate::values::element::Element;
+use crate::values::formula::Formula;
 
 /// Where elements come from.
 pub trait Arithmetic {

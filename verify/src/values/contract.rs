@@ -1,6 +1,6 @@
-//! The promised arguments and result of an emitted function. [`reference`](crate::reference) lists the functions.
+//! The promised arguments and result of an emitted function. [`reference`](crate::textbook::reference) lists the functions.
 
-use crate::program::Argument;
+use crate::values::program::Argument;
 
 /// Length of a dimension of a result.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -16,9 +16,9 @@
 
 use std::collections::BTreeSet;
 
-use crate::contract::{tip_of, Promise};
-use crate::element::Element;
-use crate::program::Program;
+use crate::values::contract::{tip_of, Promise};
+use crate::values::element::Element;
+use crate::values::program::Program;
 
 /// Matrices whose pivots are permitted divisors.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]

@@ -13,8 +13,8 @@ use std::sync::{Mutex, PoisonError};
 use dashu_base::{Abs, BitTest, Signed, SquareRoot, UnsignedAbs};
 use dashu_int::{IBig, UBig};
 
-use crate::formula::{definitions, Formula, Rational, Root};
-use crate::interval::{ceil_shift, floor_div, floor_shift, invert, multiply, Interval};
+use crate::values::formula::{definitions, Formula, Rational, Root};
+use crate::values::interval::{ceil_shift, floor_div, floor_shift, invert, multiply, Interval};
 
 /// Precisions, tried in this order, bits.
 const PRECISIONS: [usize; 5] = [128, 256, 1024, 4096, 12_288];

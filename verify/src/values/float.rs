@@ -1,8 +1,8 @@
 //! Executes programs in floats like the emitted functions: the same operations in the same order, with sine and cosine of libm.
 
-use crate::element::Element;
-use crate::enclosure::Float;
-use crate::program::{Argument, Inputs, Program, Scaled, Turn};
+use crate::values::element::Element;
+use crate::values::enclosure::Float;
+use crate::values::program::{Argument, Inputs, Program, Scaled, Turn};
 
 /// Number of states that run in parallel lanes.
 pub const LANES: usize = 8;
@@ -83,7 +83,7 @@ macro_rules! stribeck {
     ($module:ident, $float:ty) => {
         pub(crate) mod $module {
             type Real = $float;
-            include!("reader/sines/stribeck.rs");
+            include!("../read/reader/sines/stribeck.rs");
 
             /// exp(-|rate| / velocity), as computed by emitted modules.
             pub(crate) fn of(rate: Real, velocity: Real) -> Real {

@@ -1,7 +1,7 @@
 //! Exact constants as plain formulas: `1/2*sqrt(3) - 2*pi`, `0.85*sin(7/10)`.
 //!
 //! The constants of a description and the claimed values of literals have this text form. They are parsed here, then evaluated in an
-//! [`Arithmetic`](crate::arithmetic::Arithmetic) or enclosed to any precision ([`crate::enclosure`]).
+//! [`Arithmetic`](crate::values::arithmetic::Arithmetic) or enclosed to any precision ([`crate::values::enclosure`]).
 //!
 //! A name such as `k0` denotes a formula that is defined once. The constants of an arm with general angles are graphs; their expanded form would
 //! have exponential length ([`mod@definitions`]).
@@ -16,7 +16,7 @@ use std::sync::Arc;
 use dashu_base::{Abs, Gcd, Signed, SquareRoot, UnsignedAbs};
 use dashu_int::{IBig, UBig};
 
-use crate::element::Element;
+use crate::values::element::Element;
 use definitions::{Defined, Definition};
 
 /// Maximum number of bits of an exact value.
@@ -436,7 +436,7 @@ fn root_of_rational(value: &Rational) -> Result<Formula, String> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::arithmetic::wide::Wide;
+    use crate::values::arithmetic::wide::Wide;
 
     #[test]
     fn numbers_and_roots_take_one_form() {

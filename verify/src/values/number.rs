@@ -3,14 +3,14 @@
 //! The equations are compiled once for each type that they are executed in: for integers modulo a prime, which most points are drawn in, and
 //! for this one, which all other arithmetics share.
 
-use crate::arithmetic::degree::Degree;
-use crate::arithmetic::running::Running;
-use crate::arithmetic::tower::Surd;
-use crate::arithmetic::wide::Wide;
-use crate::arithmetic::Arithmetic;
-use crate::element::Element;
-use crate::formula::Formula;
-use crate::ranges::Range;
+use crate::values::arithmetic::degree::Degree;
+use crate::values::arithmetic::running::Running;
+use crate::values::arithmetic::tower::Surd;
+use crate::values::arithmetic::wide::Wide;
+use crate::values::arithmetic::Arithmetic;
+use crate::values::element::Element;
+use crate::values::formula::Formula;
+use crate::values::ranges::Range;
 
 /// What a [`Number`] can be.
 pub trait Member: Element {

@@ -2,8 +2,8 @@
 
 use std::fmt;
 
-use crate::element::Element;
-use crate::formula::{Formula, MOST_BITS};
+use crate::values::element::Element;
+use crate::values::formula::{Formula, MOST_BITS};
 
 /// The constant of modules that have the acceleration of free fall as an argument.
 pub const NOMINAL_GRAVITY: &str = "NOMINAL_GRAVITY";
@@ -126,7 +126,7 @@ pub struct Angle {
     pub turn: Option<(usize, bool)>,
     /// The literals that the terms are multiplied by, if any are.
     pub factors: Vec<Option<usize>>,
-    /// Which of the description's computed angles it is ([`Angles`](crate::equations::angles::Angles)).
+    /// Which of the description's computed angles it is ([`Angles`](crate::textbook::equations::angles::Angles)).
     pub computed: Option<usize>,
 }
 

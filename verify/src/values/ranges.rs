@@ -1,9 +1,9 @@
 //! Intervals and error bounds of all steps of a program over a box of arguments.
 
-use crate::enclosure::Float;
-use crate::float::Arguments;
-use crate::formula::{Formula, Rational};
-use crate::program::{Angle, Argument, Literal, Program, Step};
+use crate::values::enclosure::Float;
+use crate::values::float::Arguments;
+use crate::values::formula::{Formula, Rational};
+use crate::values::program::{Angle, Argument, Literal, Program, Step};
 
 /// Whether a float is a power of two whose products neither round nor leave the normal range for values of any robot.
 pub fn is_power_of_two(value: f64) -> bool {

@@ -11,8 +11,8 @@
 //!
 //! In a field a product is 0 only if a factor is. So an operand that equals some ±g_i at every point equals the same ±g_i everywhere.
 
-use crate::element::Element;
-use crate::program::{Program, Step};
+use crate::values::element::Element;
+use crate::values::program::{Program, Step};
 
 /// The function with the gravity torques whose signs a function may take, for an arm with load-dependent friction.
 pub fn of_torques(function: &str) -> Option<&'static str> {

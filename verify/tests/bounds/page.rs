@@ -6,7 +6,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
 
 use armgen_codegen::kinds::Scalar;
-use armgen_verify::bounds::{of, two_digits};
+use armgen_verify::floats::bounds::{of, two_digits};
 
 use super::{common, robot};
 

@@ -5,11 +5,11 @@ use armgen_codegen::kinds::Scalar;
 use armgen_codegen::program::Trig;
 use armgen_codegen::schedule::Options;
 use armgen_codegen::validate;
-use armgen_verify::checker::Effort;
-use armgen_verify::claims::Claims;
-use armgen_verify::program::{Program, Step};
-use armgen_verify::reader::{Module, ModuleText};
-use armgen_verify::stream::Stream;
+use armgen_verify::judge::checker::Effort;
+use armgen_verify::read::claims::Claims;
+use armgen_verify::read::reader::{Module, ModuleText};
+use armgen_verify::values::program::{Program, Step};
+use armgen_verify::values::stream::Stream;
 use armgen_verify::{prepare, verify_with};
 
 use crate::common;
@@ -170,7 +170,7 @@ pub(crate) fn check(name: &str, language: Language, fuse: bool, wanted: usize) {
             assert!(idle < 20, "{name} {language:?}: {change} changes nothing");
             continue;
         }
-        let equal = armgen_verify::report::Verdict::Equal;
+        let equal = armgen_verify::certificate::report::Verdict::Equal;
         let found = spoilt.iter().any(|function| {
             let read = module.functions.iter().find(|(other, _)| other == function).expect("it stands there");
             prepared.checker.function(function, &read.1, module.real).verdict != equal

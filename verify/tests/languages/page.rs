@@ -8,7 +8,7 @@ use armgen_codegen::kinds::Scalar;
 use armgen_codegen::program::Trig;
 use armgen_codegen::schedule::Options;
 use armgen_codegen::Generated;
-use armgen_verify::reader::ModuleText;
+use armgen_verify::read::reader::ModuleText;
 
 use super::tools::{numpy, succeed, there, write, write_package};
 use crate::common;

@@ -7,8 +7,8 @@ use std::process::Command;
 
 use armgen_codegen::emit::{camel, Language};
 use armgen_codegen::Generated;
-use armgen_verify::contract::Array;
-use armgen_verify::program::Argument;
+use armgen_verify::values::contract::Array;
+use armgen_verify::values::program::Argument;
 
 use super::run::{Effort, Robot};
 use super::tools::{numpy, succeed, there, write, write_package};

@@ -8,10 +8,10 @@ use armgen_codegen::kinds::Scalar;
 use armgen_codegen::program::Trig;
 use armgen_codegen::schedule::Options;
 use armgen_codegen::source::Source;
-use armgen_verify::contract::{Array, Length, Promise, Sizes};
-use armgen_verify::program::Argument;
-use armgen_verify::reader::{Constant, Module};
-use armgen_verify::stream::Stream;
+use armgen_verify::read::reader::{Constant, Module};
+use armgen_verify::values::contract::{Array, Length, Promise, Sizes};
+use armgen_verify::values::program::Argument;
+use armgen_verify::values::stream::Stream;
 
 use super::programs::{batch, c, javascript, octave, python, rust};
 use super::tools::write;
@@ -47,7 +47,7 @@ impl Robot {
         let sizes = module.sizes();
         let (dof, parameters) = (sizes.n, sizes.p);
         let of_joints = |k: usize| parameters + k * dof..parameters + (k + 1) * dof;
-        let called = |(name, program): (&str, &armgen_verify::program::Program)| {
+        let called = |(name, program): (&str, &armgen_verify::values::program::Program)| {
             let promise = Promise::of(name).expect("a known function").0;
             let place = |argument: Argument| match argument {
                 Argument::Pi => 0..parameters,

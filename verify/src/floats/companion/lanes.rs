@@ -43,7 +43,7 @@ impl Side {
 #[derive(Clone, Debug)]
 pub(super) struct Lanes {
     steps: Vec<Step>,
-    inputs: Vec<Option<crate::program::Argument>>,
+    inputs: Vec<Option<crate::values::program::Argument>>,
     angles: Vec<(Vec<(u32, Real)>, super::Sum)>,
     values: Vec<Many>,
     roundings: Vec<[Real; LANES]>,

@@ -26,10 +26,10 @@ use super::constant::{decimal, integer};
 use super::items::{Part, Public, INTO};
 use super::lexer::{Fault, Kind, Token};
 use super::parser::{Parser, Reads};
-use crate::check::Check;
-use crate::contract::{of_module, Promise, Returned};
-use crate::enclosure::Float;
-use crate::program::{Angle, Argument, Output, Program, Step};
+use crate::values::check::Check;
+use crate::values::contract::{of_module, Promise, Returned};
+use crate::values::enclosure::Float;
+use crate::values::program::{Angle, Argument, Output, Program, Step};
 
 /// Maximum number of steps and result entries in a module; a module of 32 joints has a third of it.
 const MOST_STEPS: usize = 4_000_000;

@@ -18,10 +18,10 @@ use armgen_description::language::Language;
 use super::parameters::{has_payload, names, C_PAYLOAD};
 use super::plain::{in_order, promised, sizes, Body, Comments, Constants, Functions, Lines, Syntax};
 use super::{Constant, Fault, Function, Module};
-use crate::check::Check;
-use crate::contract::{of_module, Array, Length, Returned, Sizes};
-use crate::enclosure::Float;
-use crate::program::{Argument, Step, JOINTS, MOTORS, NOMINAL_GRAVITY, TIPS};
+use crate::values::check::Check;
+use crate::values::contract::{of_module, Array, Length, Returned, Sizes};
+use crate::values::enclosure::Float;
+use crate::values::program::{Argument, Step, JOINTS, MOTORS, NOMINAL_GRAVITY, TIPS};
 
 pub(super) const COMMENTS: Comments = Comments { line: None, block: Some(("/*", "*/")), behind: "" };
 

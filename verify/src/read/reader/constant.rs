@@ -2,9 +2,9 @@
 
 use super::lexer::{Fault, Kind, Token};
 use super::parser::{Parser, Reads};
-use crate::check::Check;
-use crate::enclosure::Float;
-use crate::program::Literal;
+use crate::values::check::Check;
+use crate::values::enclosure::Float;
+use crate::values::program::Literal;
 
 /// The value of a constant.
 #[derive(Clone, Debug, PartialEq)]

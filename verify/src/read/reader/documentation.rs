@@ -4,7 +4,7 @@
 
 use super::lexer::{Fault, Kind};
 use super::parser::Parser;
-use crate::check::Check;
+use crate::values::check::Check;
 
 /// Maximum number of documentation lines of an item; 1024 parameters have a line each.
 const MOST_LINES: usize = 2048;

@@ -8,11 +8,11 @@ use super::lexer::{Fault, Kind, Lexer, Token};
 use super::parameters::{has_payload, RUST_INDEX, RUST_PAYLOAD};
 use super::parser::Parser;
 use super::sines::{self, Private};
-use crate::check::Check;
-use crate::contract::{of_module, Promise};
-use crate::enclosure::Float;
-use crate::program::{Argument, JOINTS, MOTORS, NOMINAL_GRAVITY, TIPS};
-use crate::reference::BASE_REGRESSOR;
+use crate::textbook::reference::BASE_REGRESSOR;
+use crate::values::check::Check;
+use crate::values::contract::{of_module, Promise};
+use crate::values::enclosure::Float;
+use crate::values::program::{Argument, JOINTS, MOTORS, NOMINAL_GRAVITY, TIPS};
 
 const LINTS: &str = "#[allow(dead_code)]";
 /// For items with numbers of a robot, among which clippy recognises pi and e.

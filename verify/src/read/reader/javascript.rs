@@ -19,8 +19,8 @@ use super::plain::{
     CONSTANTS,
 };
 use super::{Constant, Fault, Function, Module};
-use crate::contract::{Length, Returned, Sizes};
-use crate::enclosure::Float;
+use crate::values::contract::{Length, Returned, Sizes};
+use crate::values::enclosure::Float;
 
 pub(super) const COMMENTS: Comments = Comments { line: Some("//"), block: Some(("/**", "*/")), behind: "" };
 

@@ -9,7 +9,7 @@ use std::fmt;
 
 pub(crate) use armgen_description::source::is_hidden;
 
-use crate::check::Check;
+use crate::values::check::Check;
 
 /// A fault of a text, with its place.
 #[derive(Clone, Debug, PartialEq, Eq)]

@@ -22,9 +22,9 @@ use super::plain::{
     CONSTANTS,
 };
 use super::{Constant, Fault, Function, Module, LONGEST};
-use crate::contract::{Array, Length, Promise, Sizes};
-use crate::enclosure::Float;
-use crate::program::{Argument, Program};
+use crate::values::contract::{Array, Length, Promise, Sizes};
+use crate::values::enclosure::Float;
+use crate::values::program::{Argument, Program};
 
 pub(super) const COMMENTS: Comments = Comments { line: Some("%"), block: None, behind: "" };
 

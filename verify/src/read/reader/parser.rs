@@ -1,7 +1,7 @@
 //! Reads tokens in sequence and compares them with the required ones.
 
 use super::lexer::{Fault, Kind, Lexer, Token};
-use crate::check::Check;
+use crate::values::check::Check;
 
 /// A position in a text with its token; a copy allows backtracking.
 #[derive(Clone, Copy, Debug)]

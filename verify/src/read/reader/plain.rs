@@ -24,8 +24,8 @@ pub(super) use parts::Parts;
 
 use super::lexer::Fault;
 use super::Function;
-use crate::contract::{Promise, Sizes};
-use crate::program::Argument;
+use crate::values::contract::{Promise, Sizes};
+use crate::values::program::Argument;
 
 /// The function with this name, and its arguments in a module of these sizes.
 pub(super) fn promised(name: &str, sizes: &Sizes) -> Option<(&'static Promise, Vec<Argument>)> {
@@ -75,7 +75,7 @@ pub(super) fn names_of(sizes: &Sizes) -> impl Iterator<Item = String> {
         [] => vec![String::new()],
         tips => tips.iter().map(|(tip, _)| tip.to_ascii_lowercase() + "_").collect(),
     };
-    crate::reference::PROMISES.iter().flat_map(move |promise| promise.names(&tips))
+    crate::textbook::reference::PROMISES.iter().flat_map(move |promise| promise.names(&tips))
 }
 
 /// `inertia_matrix` as `inertiaMatrix`.

@@ -19,8 +19,8 @@ use super::plain::{
     in_order, is_of_some_arms, names_of, promised, sizes, Body, Comments, Constants, Functions, Lines, Parts, Syntax, CONSTANTS,
 };
 use super::{Constant, Fault, Function, Module};
-use crate::contract::{of_module, Length, Promise, Returned, Sizes};
-use crate::enclosure::Float;
+use crate::values::contract::{of_module, Length, Promise, Returned, Sizes};
+use crate::values::enclosure::Float;
 
 pub(super) const COMMENTS: Comments = Comments { line: Some("#"), block: Some(("    \"\"\"", "\"\"\"")), behind: ":" };
 

@@ -8,8 +8,8 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use super::lexer::{Fault, Kind, Lexer};
 use super::parser::Parser;
-use crate::check::Check;
-use crate::enclosure::Float;
+use crate::values::check::Check;
+use crate::values::enclosure::Float;
 
 const OF_LIBM_F64: &str = "#[inline]\nfn sin_cos(x: Real) -> (Real, Real) {\n    libm::sincos(x)\n}";
 const OF_LIBM_F32: &str = "#[inline]\nfn sin_cos(x: Real) -> (Real, Real) {\n    libm::sincosf(x)\n}";

@@ -14,10 +14,10 @@ use armgen_description::manipulator::{Coupling, JointSum, JointVariable, Manipul
 use dashu_base::{Gcd, Signed, UnsignedAbs};
 use dashu_int::UBig;
 
-use crate::arithmetic::Arithmetic;
-use crate::element::Element;
-use crate::formula::Formula;
-use crate::program::{Angle, Program, Step};
+use crate::values::arithmetic::Arithmetic;
+use crate::values::element::Element;
+use crate::values::formula::Formula;
+use crate::values::program::{Angle, Program, Step};
 
 /// A number of the description as a formula; only its text is used.
 pub fn formula(number: &Number) -> Formula {

@@ -12,9 +12,9 @@ pub use super::angles::formula;
 use super::angles::Angles;
 use super::state::State;
 use super::vector::{add, dot, product, scale, sub, transpose, Matrix, Vector};
-use crate::arithmetic::Arithmetic;
-use crate::element::Element;
-use crate::program::Inputs;
+use crate::values::arithmetic::Arithmetic;
+use crate::values::element::Element;
+use crate::values::program::Inputs;
 
 /// The pose of a frame in another.
 #[derive(Clone, Debug)]

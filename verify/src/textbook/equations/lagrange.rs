@@ -6,8 +6,8 @@ use super::arm::{Arm, Joint};
 use super::pose::Pose;
 use super::state::State;
 use super::vector::{self, apply, dot, product, scale, solve, transpose, Vector};
-use crate::arithmetic::dual::Dual;
-use crate::element::Element;
+use crate::values::arithmetic::dual::Dual;
+use crate::values::element::Element;
 
 /// The terms of the equations of motion: B and C row by row, g, F and U.
 pub struct Parts<E> {

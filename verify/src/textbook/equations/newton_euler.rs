@@ -18,7 +18,7 @@
 use super::arm::{symmetric, Arm, Body};
 use super::pose::Pose;
 use super::vector::{add, apply, cross, dot, scale, sub, Vector};
-use crate::element::Element;
+use crate::values::element::Element;
 
 /// The ten inertial parameters of a body in its frame: m, mcx, mcy, mcz, Ixx, Ixy, Iyy, Ixz, Iyz, Izz about the frame's origin.
 pub type Ten<E> = [E; 10];

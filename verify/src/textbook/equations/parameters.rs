@@ -12,8 +12,8 @@ use super::newton_euler::{body, ten, Carrier, ReferenceMotion};
 use super::pose::Pose;
 use super::state::State;
 use super::vector::{add, dot, scale, solve};
-use crate::arithmetic::Arithmetic;
-use crate::element::Element;
+use crate::values::arithmetic::Arithmetic;
+use crate::values::element::Element;
 
 /// A standard parameter.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]

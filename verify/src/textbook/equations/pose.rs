@@ -3,7 +3,7 @@
 use super::arm::{Arm, Frame};
 use super::state::State;
 use super::vector::{add, apply, cross, product, scale, sub, transpose, Vector};
-use crate::element::Element;
+use crate::values::element::Element;
 
 /// Frames relative to the base frame at a state.
 #[derive(Clone, Debug)]

@@ -1,11 +1,11 @@
 //! A state: the values of all inputs of the equations.
 
 use super::angles::Angles;
-use crate::arithmetic::dual::Dual;
-use crate::arithmetic::Arithmetic;
-use crate::element::Element;
-use crate::float::Arguments;
-use crate::program::{by_addition, Argument, Inputs, Scaled, Turn};
+use crate::values::arithmetic::dual::Dual;
+use crate::values::arithmetic::Arithmetic;
+use crate::values::element::Element;
+use crate::values::float::Arguments;
+use crate::values::program::{by_addition, Argument, Inputs, Scaled, Turn};
 
 /// Values of joint variables, rates, accelerations, references, torques and parameters.
 #[derive(Clone, Debug)]

@@ -1,6 +1,6 @@
 //! Vectors and 3×3 matrices of exact numbers.
 
-use crate::element::Element;
+use crate::values::element::Element;
 
 /// x, y, z.
 pub type Vector<E> = [E; 3];

@@ -14,9 +14,9 @@ use dashu_base::{Abs, EstimatedLog2, UnsignedAbs};
 use dashu_int::UBig;
 
 use super::Arithmetic;
-use crate::element::Element;
-use crate::formula::definitions::{self, Defined};
-use crate::formula::{Formula, Rational, Root};
+use crate::values::element::Element;
+use crate::values::formula::definitions::{self, Defined};
+use crate::values::formula::{Formula, Rational, Root};
 
 /// What all values of a program share.
 #[derive(Debug, Default)]

@@ -1,6 +1,6 @@
 //! Dual numbers: a value and its derivative along one direction, (a + a'ε)(b + b'ε) = ab + (a'b + ab')ε with ε² = 0.
 
-use crate::element::Element;
+use crate::values::element::Element;
 
 /// A value with its derivative.
 #[derive(Clone, Debug, PartialEq)]

@@ -1,7 +1,7 @@
 //! Formulas as an arithmetic.
 
 use super::Arithmetic;
-use crate::formula::{Formula, Rational};
+use crate::values::formula::{Formula, Rational};
 
 /// The constants of an arm with nothing put in for them.
 #[derive(Clone, Copy, Debug)]

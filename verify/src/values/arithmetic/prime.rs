@@ -12,10 +12,10 @@ use dashu_int::UBig;
 use num_modular::ModularSymbols;
 
 use super::Arithmetic;
-use crate::element::{scrambled, Element};
-use crate::formula::definitions::Defined;
-use crate::formula::{root_from_coprime, Atoms, Dependent, Formula, Rational, Root};
-use crate::stream::Stream;
+use crate::values::element::{scrambled, Element};
+use crate::values::formula::definitions::Defined;
+use crate::values::formula::{root_from_coprime, Atoms, Dependent, Formula, Rational, Root};
+use crate::values::stream::Stream;
 
 /// An integer modulo a prime.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

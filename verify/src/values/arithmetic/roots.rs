@@ -23,10 +23,10 @@ use dashu_int::{IBig, UBig};
 use super::prime::{Prime, Residue};
 use super::tower::{Coordinates, Tower};
 use super::Arithmetic;
-use crate::element::Element;
-use crate::enclosure::enclose;
-use crate::formula::{Atoms, Dependent, Formula, Rational, Root};
-use crate::stream::Stream;
+use crate::values::element::Element;
+use crate::values::enclosure::enclose;
+use crate::values::formula::{Atoms, Dependent, Formula, Rational, Root};
+use crate::values::stream::Stream;
 
 /// As many roots of integers may occur under dependent nested roots: to find y costs up to 3^k operations.
 const MOST_INNER_ROOTS: usize = 8;

@@ -1,14 +1,14 @@
 //! Floats with what rounding can have done to them, states side by side: the equations as a plain program of them computes, and how well.
 //!
-//! The rules are those of [`mod@crate::companion`], for double precision.
+//! The rules are those of [`mod@crate::floats::companion`], for double precision.
 
 use std::collections::VecDeque;
 
 use super::Arithmetic;
-use crate::element::Element;
-use crate::enclosure::Float;
-use crate::float::LANES;
-use crate::formula::Formula;
+use crate::values::element::Element;
+use crate::values::enclosure::Float;
+use crate::values::float::LANES;
+use crate::values::formula::Formula;
 
 const UNIT: f64 = f64::EPSILON / 2.0;
 
@@ -109,7 +109,8 @@ impl Arithmetic for RunningNumbers {
 
     fn constant(&self, formula: &Formula) -> Option<Running> {
         let value = Float::F64.nearest(formula)?;
-        let exact = formula.as_rational().is_some_and(|e| crate::formula::Rational::try_from(value).is_ok_and(|f| f == *e));
+        let exact =
+            formula.as_rational().is_some_and(|e| crate::values::formula::Rational::try_from(value).is_ok_and(|f| f == *e));
         Some(Running::rounded([value; LANES], if exact { 0.0 } else { 1.0 }))
     }
 

@@ -13,10 +13,10 @@ use dashu_base::{BitTest, Gcd, Signed, UnsignedAbs};
 use dashu_int::{IBig, UBig};
 
 use super::Arithmetic;
-use crate::element::{scrambled, Element};
-use crate::formula::definitions::Defined;
-use crate::formula::{root_from_coprime, Atoms, Dependent, Formula, Rational, Root};
-use crate::stream::Stream;
+use crate::values::element::{scrambled, Element};
+use crate::values::formula::definitions::Defined;
+use crate::values::formula::{root_from_coprime, Atoms, Dependent, Formula, Rational, Root};
+use crate::values::stream::Stream;
 
 /// What all numbers of a tower share.
 #[derive(Debug)]

@@ -7,9 +7,9 @@
 //! and 256 bits ([`super::wide`]) are needed only to show the worst cases.
 
 use super::wide::{stribeck, wide_circle, Wide, WideArguments};
-use crate::element::Element;
-use crate::float::{Arguments, LANES};
-use crate::program::{Angle, Argument, Inputs, Program, Scaled, Step};
+use crate::values::element::Element;
+use crate::values::float::{Arguments, LANES};
+use crate::values::program::{Angle, Argument, Inputs, Program, Scaled, Step};
 
 /// high + low.
 pub type Pair = (f64, f64);
@@ -343,7 +343,7 @@ pub fn values(program: &Program, literals: &[Pair], arguments: &TwofoldArguments
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::stream::Stream;
+    use crate::values::stream::Stream;
 
     /// How far a pair is from a wide number, by the size of that.
     fn relative(found: Pair, exact: &Wide) -> f64 {

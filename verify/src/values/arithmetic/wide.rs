@@ -5,11 +5,11 @@
 use dashu_base::{BitTest, Signed, UnsignedAbs};
 use dashu_int::{IBig, UBig};
 
-use crate::element::Element;
-use crate::enclosure::{enclose, sine_cosine_of};
-use crate::float::Arguments;
-use crate::formula::{Formula, Rational};
-use crate::program::{by_addition, Argument, Inputs, Program, Scaled, Turn};
+use crate::values::element::Element;
+use crate::values::enclosure::{enclose, sine_cosine_of};
+use crate::values::float::Arguments;
+use crate::values::formula::{Formula, Rational};
+use crate::values::program::{by_addition, Argument, Inputs, Program, Scaled, Turn};
 
 /// A number with 256 bits.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -345,7 +345,7 @@ impl Inputs<Wide> for WideArguments {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::stream::Stream;
+    use crate::values::stream::Stream;
 
     fn exact(value: Wide) -> Rational {
         let bytes: Vec<u8> = value.words.iter().flat_map(|w| w.to_le_bytes()).collect();
@@ -393,7 +393,7 @@ mod tests {
 
     #[test]
     fn exponentials_are_as_fine_as_stated() {
-        use crate::float::{stribeck_f32, stribeck_f64};
+        use crate::values::float::{stribeck_f32, stribeck_f64};
         let mut stream = Stream::new(5);
         let mut worst = [0.0f64; 2];
         for k in 0..4000 {

@@ -14,9 +14,9 @@ use armgen_description::source::Source;
 use super::Check::{self, *};
 use crate::certificate::Certificate;
 use crate::certify::{certify, document_bounds};
-use crate::checker::Effort;
-use crate::claims::Claims;
-use crate::reader::ModuleText;
+use crate::judge::checker::Effort;
+use crate::read::claims::Claims;
+use crate::read::reader::ModuleText;
 use crate::{verify, verify_with};
 
 thread_local! {
@@ -212,7 +212,7 @@ fn texts_and_items(tally: &mut Tally, scara: &Given) {
     tally.text(scara, "no struct", &without("pub struct EquationsOfMotion"), &[(Companions, "come together")]);
     let no_index = [(Companions, "the module does not have `parameter_index`")];
     tally.text(scara, "no places of parameters", &without("pub const fn parameter_index("), &no_index);
-    let payload = include_str!("../reader/parameters.rs");
+    let payload = include_str!("../../read/reader/parameters.rs");
     let payload = payload.split("RUST_PAYLOAD: &str = r#\"").nth(1).and_then(|rest| rest.split("\"#").next()).expect("its text");
     let foreign = [(Companions, "`payload_parameters` of parameters that the module does not have")];
     tally.text(scara, "a payload of none", &format!("{module}{payload}"), &foreign);

@@ -16,8 +16,8 @@ use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use dashu_base::BitTest;
 
 use super::{root_of_rational, Formula, Rational, Root};
-use crate::check::Check;
-use crate::interval::Interval;
+use crate::values::check::Check;
+use crate::values::interval::Interval;
 
 /// Prefix of a name; its number follows.
 pub const PREFIX: &str = "k";
@@ -322,12 +322,12 @@ impl<E: Clone> Defined<E> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::arithmetic::prime::Prime;
-    use crate::arithmetic::tower::Tower;
-    use crate::arithmetic::Arithmetic;
-    use crate::enclosure::{bits_before_the_point, Float};
-    use crate::formula::{Atoms, Dependent};
-    use crate::stream::Stream;
+    use crate::values::arithmetic::prime::Prime;
+    use crate::values::arithmetic::tower::Tower;
+    use crate::values::arithmetic::Arithmetic;
+    use crate::values::enclosure::{bits_before_the_point, Float};
+    use crate::values::formula::{Atoms, Dependent};
+    use crate::values::stream::Stream;
 
     fn list(texts: &[&str]) -> Result<Definitions, String> {
         let mut definitions = Definitions::default();

@@ -10,8 +10,8 @@ use dashu_int::{IBig, UBig};
 
 use super::definitions::{self, Definitions};
 use super::{Formula, Rational, Root};
-use crate::check::Check;
-use crate::element::Element;
+use crate::values::check::Check;
+use crate::values::element::Element;
 
 const LONGEST: usize = 200_000;
 const DEEPEST: usize = 64;

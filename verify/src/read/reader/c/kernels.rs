@@ -1,9 +1,9 @@
 //! Reads the kernels of a module in CUDA: their texts follow from the signatures of the functions.
 
 use super::{Lines, Robot, COMMENTS};
-use crate::contract::{of_module, Array, Length, Returned, Sizes};
-use crate::reader::lexer::Fault;
-use crate::reader::plain::promised;
+use crate::read::reader::lexer::Fault;
+use crate::read::reader::plain::promised;
+use crate::values::contract::{of_module, Array, Length, Returned, Sizes};
 
 const KERNELS: &str = include_str!("kernels.h");
 

@@ -4,10 +4,10 @@ use std::collections::BTreeMap;
 
 use super::lines::Lines;
 use super::place::Place;
-use crate::check::Check;
-use crate::enclosure::Float;
-use crate::program::{Angle, Argument, Output, Program, Step};
-use crate::reader::lexer::Fault;
+use crate::read::reader::lexer::Fault;
+use crate::values::check::Check;
+use crate::values::enclosure::Float;
+use crate::values::program::{Angle, Argument, Output, Program, Step};
 
 /// Maximum number of steps and result entries in a module.
 const MOST_STEPS: usize = 4_000_000;
@@ -34,27 +34,27 @@ fn not_too_deep(place: &Place<'_>, brackets: usize) -> Result<(), Fault> {
 
 /// The notation of a language within a line.
 #[derive(Clone, Debug)]
-pub(in crate::reader) struct Syntax {
+pub(in crate::read::reader) struct Syntax {
     /// Texts around the index of an entry.
-    pub(in crate::reader) index: (&'static str, &'static str),
+    pub(in crate::read::reader) index: (&'static str, &'static str),
     /// The index of the first entry.
-    pub(in crate::reader) first: usize,
+    pub(in crate::read::reader) first: usize,
     /// Multiplication and division.
-    pub(in crate::reader) operators: [&'static str; 2],
+    pub(in crate::read::reader) operators: [&'static str; 2],
     /// Suffix of a number.
-    pub(in crate::reader) suffix: &'static str,
+    pub(in crate::read::reader) suffix: &'static str,
     /// Text before the entry whose sign is taken.
-    pub(in crate::reader) sign: String,
+    pub(in crate::read::reader) sign: String,
     /// Text before the entry of a Stribeck exponential.
-    pub(in crate::reader) stribeck: String,
+    pub(in crate::read::reader) stribeck: String,
     /// Text before the two factors and the summand of a fused operation, if the language has it.
-    pub(in crate::reader) fused: Option<String>,
+    pub(in crate::read::reader) fused: Option<String>,
     /// Texts around a definition: `const double `, ` = `, `;`.
-    pub(in crate::reader) define: [String; 3],
+    pub(in crate::read::reader) define: [String; 3],
     /// Texts around the index of a value in a list.
-    pub(in crate::reader) list: (&'static str, &'static str),
+    pub(in crate::read::reader) list: (&'static str, &'static str),
     /// Separator of angles.
-    pub(in crate::reader) angles: &'static str,
+    pub(in crate::read::reader) angles: &'static str,
 }
 
 impl Syntax {
@@ -66,19 +66,19 @@ impl Syntax {
 }
 
 /// A function while its program is built.
-pub(in crate::reader) struct Body<'a, 's> {
+pub(in crate::read::reader) struct Body<'a, 's> {
     pub(super) syntax: &'s Syntax,
     real: Float,
-    pub(in crate::reader) program: Program,
+    pub(in crate::read::reader) program: Program,
     scope: BTreeMap<&'a str, usize>,
     /// Whether it uses sines, signs and Stribeck friction.
-    pub(in crate::reader) asks: [bool; 3],
+    pub(in crate::read::reader) asks: [bool; 3],
     /// Number of steps and entries of the functions before.
     steps: usize,
 }
 
 impl<'a, 's> Body<'a, 's> {
-    pub(in crate::reader) fn new(
+    pub(in crate::read::reader) fn new(
         name: &str,
         arguments: Vec<Argument>,
         syntax: &'s Syntax,
@@ -97,7 +97,7 @@ impl<'a, 's> Body<'a, 's> {
     }
 
     /// Number of steps and entries of this function and those before.
-    pub(in crate::reader) fn steps(&self) -> usize {
+    pub(in crate::read::reader) fn steps(&self) -> usize {
         self.steps + self.program.steps.len() + self.program.outputs.len()
     }
 
@@ -111,7 +111,7 @@ impl<'a, 's> Body<'a, 's> {
     }
 
     /// Assigns a name to a value.
-    pub(in crate::reader) fn bind(&mut self, name: &'a str, value: usize, line: usize) -> Result<(), Fault> {
+    pub(in crate::read::reader) fn bind(&mut self, name: &'a str, value: usize, line: usize) -> Result<(), Fault> {
         if !is_value(name) {
             let reason = format!("`{name}` where the name of a value can stand, such as t1, s2 or c2");
             return Err(Fault { line, reason });
@@ -123,29 +123,29 @@ impl<'a, 's> Body<'a, 's> {
     }
 
     /// A value by its name.
-    pub(in crate::reader) fn value(&self, name: &str, line: usize) -> Result<usize, Fault> {
+    pub(in crate::read::reader) fn value(&self, name: &str, line: usize) -> Result<usize, Fault> {
         let reason = || format!("`{name}` is not a value that is given before");
         self.scope.get(name).copied().ok_or_else(|| Fault { line, reason: reason() })
     }
 
     /// Hides the names of the caller inside a part, which has its own names; [`Body::leave`] restores them.
-    pub(in crate::reader) fn enter(&mut self) -> BTreeMap<&'a str, usize> {
+    pub(in crate::read::reader) fn enter(&mut self) -> BTreeMap<&'a str, usize> {
         std::mem::take(&mut self.scope)
     }
 
-    pub(in crate::reader) fn leave(&mut self, scope: BTreeMap<&'a str, usize>) {
+    pub(in crate::read::reader) fn leave(&mut self, scope: BTreeMap<&'a str, usize>) {
         self.scope = scope;
     }
 
     /// The name and the value that a line defines, if it is a definition.
-    pub(in crate::reader) fn definition(&self, lines: &Lines<'a>) -> Option<(&'a str, &'a str)> {
+    pub(in crate::read::reader) fn definition(&self, lines: &Lines<'a>) -> Option<(&'a str, &'a str)> {
         let [begin, between, end] = &self.syntax.define;
         let inner = lines.peek().strip_prefix(begin.as_str())?.strip_suffix(end.as_str())?;
         inner.split_once(between.as_str()).filter(|(name, _)| is_value(name))
     }
 
     /// Takes the line that assigns a name to this array element, if it is the current line.
-    pub(in crate::reader) fn element(&mut self, lines: &mut Lines<'a>, from: &str, value: usize) -> Result<bool, Fault> {
+    pub(in crate::read::reader) fn element(&mut self, lines: &mut Lines<'a>, from: &str, value: usize) -> Result<bool, Fault> {
         match self.definition(lines) {
             Some((name, found)) if found == from => {
                 self.bind(name, value, lines.number())?;
@@ -157,7 +157,7 @@ impl<'a, 's> Body<'a, 's> {
     }
 
     /// Takes all lines that define a value by a sum.
-    pub(in crate::reader) fn definitions(&mut self, lines: &mut Lines<'a>) -> Result<(), Fault> {
+    pub(in crate::read::reader) fn definitions(&mut self, lines: &mut Lines<'a>) -> Result<(), Fault> {
         while let Some((name, value)) = self.definition(lines) {
             let value = self.sum_of(value, lines.number())?;
             self.bind(name, value, lines.number())?;
@@ -167,7 +167,7 @@ impl<'a, 's> Body<'a, 's> {
     }
 
     /// Adds an entry of the result.
-    pub(in crate::reader) fn output(&mut self, place: String, text: &'a str, line: usize) -> Result<(), Fault> {
+    pub(in crate::read::reader) fn output(&mut self, place: String, text: &'a str, line: usize) -> Result<(), Fault> {
         let step = self.sum_of(text, line)?;
         self.program.outputs.push(Output { place, step });
         Ok(())
@@ -182,7 +182,7 @@ impl<'a, 's> Body<'a, 's> {
     }
 
     /// The angles of a list; returns the steps for their sines and cosines.
-    pub(in crate::reader) fn angles(&mut self, text: &'a str, line: usize) -> Result<Vec<(usize, usize)>, Fault> {
+    pub(in crate::read::reader) fn angles(&mut self, text: &'a str, line: usize) -> Result<Vec<(usize, usize)>, Fault> {
         let mut place = Place { rest: text, line };
         let mut waves = Vec::new();
         loop {

@@ -3,12 +3,12 @@
 use std::collections::BTreeMap;
 
 use super::place::Place;
-use crate::contract::Sizes;
-use crate::enclosure::Float;
-use crate::program::{JOINTS, MOTORS, NOMINAL_GRAVITY, TIPS};
-use crate::reader::constant::Constant;
-use crate::reader::lexer::Fault;
-use crate::reader::{constant_of, tips_of, OF_TIP};
+use crate::read::reader::constant::Constant;
+use crate::read::reader::lexer::Fault;
+use crate::read::reader::{constant_of, tips_of, OF_TIP};
+use crate::values::contract::Sizes;
+use crate::values::enclosure::Float;
+use crate::values::program::{JOINTS, MOTORS, NOMINAL_GRAVITY, TIPS};
 
 /// Maximum number of entries in an array of constants.
 const MOST_ENTRIES: usize = 4096;
@@ -17,21 +17,21 @@ const MOST_JOINTS: usize = 128;
 
 /// The notation of constants in a language.
 #[derive(Clone, Copy, Debug)]
-pub(in crate::reader) struct Constants {
-    pub(in crate::reader) real: Float,
-    pub(in crate::reader) suffix: &'static str,
+pub(in crate::read::reader) struct Constants {
+    pub(in crate::read::reader) real: Float,
+    pub(in crate::read::reader) suffix: &'static str,
     /// The quote around a text.
-    pub(in crate::reader) quotes: char,
+    pub(in crate::read::reader) quotes: char,
     /// Texts at the beginning of an array, between its entries and at its end, and the empty array; the flag marks an inner array.
-    pub(in crate::reader) list: fn(Entry, bool) -> [&'static str; 4],
-    pub(in crate::reader) truth: [&'static str; 2],
+    pub(in crate::read::reader) list: fn(Entry, bool) -> [&'static str; 4],
+    pub(in crate::read::reader) truth: [&'static str; 2],
     /// Infinity; a minus sign precedes it if negative.
-    pub(in crate::reader) infinity: &'static str,
+    pub(in crate::read::reader) infinity: &'static str,
 }
 
 /// The kind of a constant's entries.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(in crate::reader) enum Entry {
+pub(in crate::read::reader) enum Entry {
     Text,
     Integer,
     Truth,
@@ -39,7 +39,7 @@ pub(in crate::reader) enum Entry {
 }
 
 /// The permitted constants: name, kind of entries, and nesting depth of arrays.
-pub(in crate::reader) const CONSTANTS: [(&str, Entry, usize); 25] = [
+pub(in crate::read::reader) const CONSTANTS: [(&str, Entry, usize); 25] = [
     ("NAME", Entry::Text, 0),
     ("DOF", Entry::Integer, 0),
     ("JOINT_NAMES", Entry::Text, 1),
@@ -68,7 +68,7 @@ pub(in crate::reader) const CONSTANTS: [(&str, Entry, usize); 25] = [
 ];
 
 /// Whether only the modules of some arms have a constant.
-pub(in crate::reader) fn is_of_some_arms(name: &str) -> bool {
+pub(in crate::read::reader) fn is_of_some_arms(name: &str) -> bool {
     const OF_COUPLING: [&str; 6] = [JOINTS, "ALL_JOINT_NAMES", "COUPLING", "COUPLING_OFFSET", MOTORS, "MOTOR_RATES"];
     [NOMINAL_GRAVITY, TIPS, "TASK_ROWS", "TASK"].contains(&name) || OF_COUPLING.contains(&name) || name.contains("BASE_")
 }
@@ -87,7 +87,7 @@ fn behind(name: &str, value: &Constant) -> Vec<String> {
 }
 
 /// Reads all constants in their order, by a function that reads a constant; it returns none for a constant that only some arms have.
-pub(in crate::reader) fn in_order(
+pub(in crate::read::reader) fn in_order(
     names: impl IntoIterator<Item = &'static str>,
     mut read: impl FnMut(&str) -> Result<Option<Constant>, Fault>,
 ) -> Result<Vec<(String, Constant)>, Fault> {
@@ -108,7 +108,7 @@ pub(in crate::reader) fn in_order(
 
 impl Constants {
     /// Reads the value of a constant.
-    pub(in crate::reader) fn read(&self, name: &str, text: &str, line: usize) -> Result<Constant, Fault> {
+    pub(in crate::read::reader) fn read(&self, name: &str, text: &str, line: usize) -> Result<Constant, Fault> {
         let mut place = Place { rest: text, line };
         let (entry, depth) = kind_of(name).ok_or_else(|| place.fault("there is no constant of that name"))?;
         let value = self.value(&mut place, entry, depth, false)?;
@@ -164,7 +164,7 @@ impl Constants {
 }
 
 /// The sizes in the constants of a module.
-pub(in crate::reader) fn sizes(constants: &BTreeMap<String, Constant>) -> Result<Sizes, Fault> {
+pub(in crate::read::reader) fn sizes(constants: &BTreeMap<String, Constant>) -> Result<Sizes, Fault> {
     let of = |name: &str, most: usize| match constants.get(name) {
         Some(Constant::Integer(value)) if *value <= most as u64 => Ok(*value as usize),
         None => Ok(0),

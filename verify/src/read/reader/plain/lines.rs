@@ -1,8 +1,8 @@
 //! A text as lines of code, each with its preceding comment.
 
-use crate::check::Check;
-use crate::reader::lexer::{is_hidden, name_of, Fault};
-use crate::reader::LONGEST;
+use crate::read::reader::lexer::{is_hidden, name_of, Fault};
+use crate::read::reader::LONGEST;
+use crate::values::check::Check;
 
 /// Comment text with a meaning: escapes in Python, splices and trigraphs in C, the encoding of a Python file.
 const ESCAPES: [&str; 4] = ["\\", "??/", "coding:", "coding="];
@@ -14,35 +14,35 @@ fn goes_on(line: &str) -> bool {
 
 /// A line of code.
 #[derive(Clone, Debug)]
-pub(in crate::reader) struct Line<'a> {
-    pub(in crate::reader) number: usize,
-    pub(in crate::reader) text: &'a str,
+pub(in crate::read::reader) struct Line<'a> {
+    pub(in crate::read::reader) number: usize,
+    pub(in crate::read::reader) text: &'a str,
     /// The lines of the preceding comment.
-    pub(in crate::reader) comment: Vec<&'a str>,
+    pub(in crate::read::reader) comment: Vec<&'a str>,
 }
 
 /// The lines of code of a text, in order.
 #[derive(Clone, Debug)]
-pub(in crate::reader) struct Lines<'a> {
-    pub(in crate::reader) all: Vec<Line<'a>>,
-    pub(in crate::reader) at: usize,
+pub(in crate::read::reader) struct Lines<'a> {
+    pub(in crate::read::reader) all: Vec<Line<'a>>,
+    pub(in crate::read::reader) at: usize,
     last: usize,
 }
 
 /// The comments of a language: each begins at the start of a line and ends at the end of a line.
 #[derive(Clone, Copy, Debug)]
-pub(in crate::reader) struct Comments {
+pub(in crate::read::reader) struct Comments {
     /// Prefix of a line comment.
-    pub(in crate::reader) line: Option<&'static str>,
+    pub(in crate::read::reader) line: Option<&'static str>,
     /// Beginning and end of a block comment.
-    pub(in crate::reader) block: Option<(&'static str, &'static str)>,
+    pub(in crate::read::reader) block: Option<(&'static str, &'static str)>,
     /// End of a line of code that a block comment may follow. In Python such a comment is a string, without effect only at the start of a block.
-    pub(in crate::reader) behind: &'static str,
+    pub(in crate::read::reader) behind: &'static str,
 }
 
 impl<'a> Lines<'a> {
     /// The lines of a text, without comments and empty lines.
-    pub(in crate::reader) fn new(text: &'a str, comments: Comments) -> Result<Lines<'a>, Fault> {
+    pub(in crate::read::reader) fn new(text: &'a str, comments: Comments) -> Result<Lines<'a>, Fault> {
         let mut all = Vec::new();
         let mut comment: Vec<&str> = Vec::new();
         let mut open = None;
@@ -92,36 +92,36 @@ impl<'a> Lines<'a> {
     }
 
     /// The current line, empty after the last.
-    pub(in crate::reader) fn peek(&self) -> &'a str {
+    pub(in crate::read::reader) fn peek(&self) -> &'a str {
         self.all.get(self.at).map_or("", |line| line.text)
     }
 
     /// The same lines with numbers shifted by `before`, the lines of other files.
-    pub(in crate::reader) fn behind(mut self, before: usize) -> Lines<'a> {
+    pub(in crate::read::reader) fn behind(mut self, before: usize) -> Lines<'a> {
         self.all.iter_mut().for_each(|line| line.number += before);
         self.last += before;
         self
     }
 
-    pub(in crate::reader) fn number(&self) -> usize {
+    pub(in crate::read::reader) fn number(&self) -> usize {
         self.all.get(self.at).map_or(self.last, |line| line.number)
     }
 
-    pub(in crate::reader) fn is(&self, text: &str) -> bool {
+    pub(in crate::read::reader) fn is(&self, text: &str) -> bool {
         !text.is_empty() && self.peek() == text
     }
 
-    pub(in crate::reader) fn ended(&self) -> bool {
+    pub(in crate::read::reader) fn ended(&self) -> bool {
         self.at >= self.all.len()
     }
 
     /// A fault of the current line.
-    pub(in crate::reader) fn fault(&self, reason: impl Into<String>) -> Fault {
+    pub(in crate::read::reader) fn fault(&self, reason: impl Into<String>) -> Fault {
         Fault { line: self.number(), reason: reason.into() }
     }
 
     /// The line in the form for messages.
-    pub(in crate::reader) fn shown(&self) -> String {
+    pub(in crate::read::reader) fn shown(&self) -> String {
         if self.ended() {
             return "the end of the text".into();
         }
@@ -129,14 +129,14 @@ impl<'a> Lines<'a> {
         format!("`{text}`")
     }
 
-    pub(in crate::reader) fn eat(&mut self, text: &str) -> bool {
+    pub(in crate::read::reader) fn eat(&mut self, text: &str) -> bool {
         let found = self.is(text);
         self.at += usize::from(found);
         found
     }
 
     /// Takes a line, which must be the current one.
-    pub(in crate::reader) fn expect(&mut self, text: &str) -> Result<(), Fault> {
+    pub(in crate::read::reader) fn expect(&mut self, text: &str) -> Result<(), Fault> {
         match self.eat(text) {
             true => Ok(()),
             false => Err(self.fault(format!("{} where an emitted module has `{}`", self.shown(), text.trim()))),
@@ -144,13 +144,13 @@ impl<'a> Lines<'a> {
     }
 
     /// Takes all lines of code of a text.
-    pub(in crate::reader) fn expect_all(&mut self, text: &str, comments: Comments) -> Result<(), Fault> {
+    pub(in crate::read::reader) fn expect_all(&mut self, text: &str, comments: Comments) -> Result<(), Fault> {
         let lines = Lines::new(text, comments)?;
         lines.all.iter().try_for_each(|line| self.expect(line.text))
     }
 
     /// Takes a line with this beginning and end; returns the text between.
-    pub(in crate::reader) fn between(&mut self, begin: &str, end: &str) -> Result<&'a str, Fault> {
+    pub(in crate::read::reader) fn between(&mut self, begin: &str, end: &str) -> Result<&'a str, Fault> {
         let found = self.peek().strip_prefix(begin).and_then(|rest| rest.strip_suffix(end));
         let found = found.ok_or_else(|| {
             self.fault(format!("{} where an emitted module has `{} ... {end}`", self.shown(), begin.trim_start()))

@@ -4,11 +4,11 @@ use std::collections::BTreeMap;
 
 use super::body::Body;
 use super::lines::Lines;
-use crate::reader::lexer::Fault;
+use crate::read::reader::lexer::Fault;
 
 /// The parts of long functions, in languages that pass values to a part as a list and return a list. Their lines are read at their calls.
 #[derive(Default)]
-pub(in crate::reader) struct Parts<'a>(BTreeMap<&'a str, Part<'a>>);
+pub(in crate::read::reader) struct Parts<'a>(BTreeMap<&'a str, Part<'a>>);
 
 /// A part of a long function: its arguments, and the place of its lines.
 struct Part<'a> {
@@ -19,7 +19,7 @@ struct Part<'a> {
 
 impl<'a> Parts<'a> {
     /// Adds a part whose head is at `line`.
-    pub(in crate::reader) fn add(
+    pub(in crate::read::reader) fn add(
         &mut self,
         name: &'a str,
         arguments: Vec<&'a str>,
@@ -33,12 +33,12 @@ impl<'a> Parts<'a> {
     }
 
     /// A part without a call.
-    pub(in crate::reader) fn unused(&self) -> Option<&'a str> {
+    pub(in crate::read::reader) fn unused(&self) -> Option<&'a str> {
         self.0.iter().find_map(|(name, part)| (!part.used).then_some(*name))
     }
 
     /// The function's arguments that a part takes, as in its call.
-    pub(in crate::reader) fn passed(&mut self, name: &str, lines: &Lines<'a>) -> Result<String, Fault> {
+    pub(in crate::read::reader) fn passed(&mut self, name: &str, lines: &Lines<'a>) -> Result<String, Fault> {
         let part = self.0.get_mut(name).ok_or_else(|| lines.fault(format!("there is no part `{name}`")))?;
         part.used = true;
         Ok(part.arguments.iter().map(|argument| format!("{argument}, ")).collect())
@@ -46,7 +46,7 @@ impl<'a> Parts<'a> {
 
     /// Reads the lines of a called part as if they were here. The arguments are the passed names, the line of the call, the reader for the names of
     /// results, and the name of the list of results.
-    pub(in crate::reader) fn take_in(
+    pub(in crate::read::reader) fn take_in(
         &self,
         name: &str,
         lines: &mut Lines<'a>,

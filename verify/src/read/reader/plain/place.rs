@@ -1,8 +1,8 @@
 //! A position in a line, which reads words, indices and numbers.
 
-use crate::enclosure::Float;
-use crate::program::Literal;
-use crate::reader::lexer::Fault;
+use crate::read::reader::lexer::Fault;
+use crate::values::enclosure::Float;
+use crate::values::program::Literal;
 
 /// A position in a line.
 #[derive(Clone, Copy, Debug)]
