@@ -357,6 +357,79 @@ fn inertia_alone_has_the_time_of_a_trapezoid() {
     inside("trapezoid", &arm, &path(2.0), [[1.0, 100.0], [20.0, 100.0]], 2.15);
 }
 
+/// The least and the greatest u at s and x = ds² within torques; `None` where there is none.
+fn slopes<const N: usize>(chain: &Chain<N>, piece: &Piece<f64, N>, effort: f64, s: f64, x: f64) -> Option<[f64; 2]> {
+    let at = piece.at(s);
+    // Dry friction has its sign at rest, too.
+    let x = x.max(1e-14);
+    let rest = chain.torque_with_friction(&at.q, &(at.slope * x.sqrt()), &(at.curvature * x));
+    let inertial = chain.path_dynamics(&at.q, &at.slope, &at.curvature).inertial;
+    let mut found = [f64::NEG_INFINITY, f64::INFINITY];
+    for (m, rest) in inertial.iter().zip(&rest) {
+        let ends = [(-effort - rest) / m, (effort - rest) / m];
+        found = [found[0].max(ends[0].min(ends[1])), found[1].min(ends[0].max(ends[1]))];
+    }
+    (found[0] < found[1]).then_some(found)
+}
+
+/// The time of full drive until full braking (Bobrow, Dubowsky, Gibson 1985), by the method of Runge and Kutta from both ends; `None` where
+/// these two profiles do not meet.
+fn drive_and_brake<const N: usize>(chain: &Chain<N>, piece: &Piece<f64, N>, effort: f64) -> Option<f64> {
+    let steps = 2000u16;
+    let h = piece.length / f64::from(steps);
+    let profile = |from: f64, h: f64, end: usize| {
+        let slope = |s: f64, x: f64| slopes(chain, piece, effort, s, x).map(|u| 2.0 * u[end]);
+        let (mut all, mut x) = (vec![0.0], 0.0f64);
+        for i in 0..steps {
+            let s = from + h * f64::from(i);
+            let next = || {
+                let a = slope(s, x)?;
+                let b = slope(s + 0.5 * h, x + 0.5 * h * a)?;
+                let c = slope(s + 0.5 * h, x + 0.5 * h * b)?;
+                let d = slope(s + h, x + h * c)?;
+                Some(x + h / 6.0 * (a + 2.0 * b + 2.0 * c + d))
+            };
+            let Some(reached) = next().filter(|x| *x > 0.0) else { break };
+            x = reached;
+            all.push(x);
+        }
+        all
+    };
+    let (drive, brake) = (profile(piece.start, h, 1), profile(piece.end(), -h, 0));
+    let last = usize::from(steps);
+    let brake = |i: usize| brake.get(last - i).copied();
+    let switch = (1..last).find(|i| drive.get(*i).zip(brake(*i)).is_some_and(|(drive, brake)| *drive >= brake))?;
+    brake(switch - 1)?;
+    let x = |i: usize| if i < switch { drive.get(i).copied() } else { brake(i) };
+    (0..last).map(|i| Some(2.0 * h / (x(i)?.sqrt() + x(i + 1)?.sqrt()))).sum()
+}
+
+fn driven<const N: usize>(seeds: std::ops::Range<u64>) -> usize {
+    let mut found = 0;
+    for seed in seeds {
+        let mut next = random(seed);
+        let chain: Chain<N> = chain::random(&mut next);
+        let mut point = || std::array::from_fn(|_| 1.5 * next() - 0.75);
+        let (path, effort) = (line(1.0, point(), point()), 60.0);
+        let Some(exact) = drive_and_brake(&chain, &path.pieces()[0], effort) else { continue };
+        let limits = Limits::velocity([FREE; N]).unwrap().with_effort([-effort; N], [effort; N]).unwrap();
+        with_timing(&chain, &path, &limits, Ends { hold: false, ..Ends::at_rest() }, 2e-4, 1500, |timing| {
+            let timing = timing.unwrap_or_else(|error| panic!("arm {seed}: {error}"));
+            let [low, high] = [timing.lower_bound() / exact - 1.0, timing.seconds() / exact - 1.0];
+            assert!(low < 1e-5 && high > -1e-5 && high - low < 1e-3, "arm {seed}: {exact}, {low:e} {high:e}");
+        });
+        found += 1;
+    }
+    found
+}
+
+/// Made-up arms of two and three joints on lines between two postures, with viscous friction, dry friction, and such that grows with the load.
+#[test]
+fn the_time_is_that_of_full_drive_and_full_braking() {
+    let found = [driven::<2>(1..16), driven::<3>(16..31)];
+    assert!(found[0] >= 5 && found[1] >= 5, "{found:?}");
+}
+
 fn one_row() -> chain::Row {
     let friction = JointFriction::default();
     chain::Row {
@@ -416,6 +489,15 @@ fn every_fault_has_its_place() {
         let error = timed(from, to, torque, Ends { hold: false, ..Ends::at_rest() }).unwrap_err();
         assert!(matches!(error.fault, TimingFault::InfeasibleSpeed { joint: 0, .. }), "{error}");
         assert!(low <= error.s && error.s <= high, "{error}");
+    }
+    // From there the arm falls back at once, with friction and without.
+    for friction in [[0.0; 2], [0.5, 0.1]] {
+        let (arm, limits) = (one_joint(false, friction, [9.81, 0.0, 0.0], 1.0), Limits::velocity([20.0]).unwrap());
+        let limits = limits.with_effort([-8.0], [8.0]).unwrap();
+        let ends = Ends { hold: false, ..Ends::at_rest() };
+        let error =
+            with_timing(&arm, &line(1.0, [1.2], [2.9]), &limits, ends, 1e-3, 400, |timing| timing.map(|_| ())).unwrap_err();
+        assert!(matches!(error.fault, TimingFault::InfeasibleSpeed { proved: true, .. }) && error.s == 0.0, "{error}");
     }
     let fast = timed(0.0, 1.0, 15.0, Ends { speed: [21.0, 0.0], hold: false }).unwrap_err();
     assert!(matches!(fast.fault, TimingFault::InfeasibleSpeed { proved: true, .. }), "{fast}");

@@ -517,7 +517,7 @@ fn order<T: RealField + Copy>(barriers: &[Option<Barrier<T>>; 3]) -> [Option<Law
     laws
 }
 
-/// The fraction of a segment at which a law that ends below zero gets there.
+/// The fraction of a segment at which a law that ends below zero gets there, from below.
 fn zero_of<T: RealField + Copy>(law: &Law<T>) -> T {
     let (mut left, mut right) = (T::zero(), T::one());
     for _ in 0..60 {
@@ -528,7 +528,7 @@ fn zero_of<T: RealField + Copy>(law: &Law<T>) -> T {
             right = middle;
         }
     }
-    right
+    left
 }
 
 /// The law seen from the other end.
