@@ -193,7 +193,8 @@ impl<T: RealField + Copy, const N: usize> Solver<'_, T, N> {
                 }
             }
         }
-        let [start, end] = self.ends.speed.map(|v| v * v);
+        // Rounded upwards.
+        let [start, end] = self.ends.speed.map(|v| v * v * (T::one() + T::default_epsilon() * lit(4.0)));
         for (given, i) in [(start, 0), (end, count)] {
             let Some((segment, is_end)) = beside(segments, i) else { continue };
             let node = segments.get(i).map_or(given, |of| of.bound.node);
