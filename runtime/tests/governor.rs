@@ -309,3 +309,69 @@ fn an_arm_retreats_along_its_path() {
         }
     });
 }
+
+/// A piece from `s` on, as long as `length`.
+fn part<const N: usize>(piece: &Piece<f64, N>, s: f64, length: f64) -> Piece<f64, N> {
+    let mut part = Piece { start: s, length, ..*piece };
+    for power in (0..6).rev() {
+        for higher in power..5 {
+            part.coefficients[higher] = part.coefficients[higher] + part.coefficients[higher + 1] * (s - piece.start);
+        }
+    }
+    part
+}
+
+/// Stops at many times beside the plan that rests first, found by bisection of its end: by how many ends of segments, where alone the
+/// governor rests, it passes the first one after the end of that plan. How many stops pass 0, 1, 2 and more ends.
+fn stops<const N: usize>(chain: &Chain<N>, bounds: Bounds<N>, range: [f64; N], paths: u64) -> [usize; 4] {
+    let step = Duration::from_micros(100);
+    let mut passed = [0; 4];
+    for seed in 0..paths {
+        let path = random_path(&mut random(seed + 300), range);
+        let whole = path.pieces().last().map_or(0.0, Piece::end);
+        with_timing(chain, &path, &limits(bounds), Ends { hold: false, ..Ends::at_rest() }, 1e-3, 1000, |timing| {
+            let timing = timing.expect("a timing");
+            let mut storage = vec![[0.0; 2]; timing.segments()];
+            for share in 1..12 {
+                let mut governor = Governor::new(&timing, &mut storage).expect("an interval for each segment");
+                let begin = governor.advance(timing.duration() * share / 12, Command::Override(1.0)).progress;
+                let mut rest = governor.sample();
+                while !matches!(rest.phase, Phase::Held | Phase::Ended) {
+                    rest = governor.advance(step, Command::Stop);
+                }
+                let is_possible = |to: f64| {
+                    let cut = |piece: &Piece<f64, N>| {
+                        let (s, end) = (piece.start.max(begin.s), piece.end().min(to));
+                        (end - s > 1e-9).then(|| part(piece, s, end - s))
+                    };
+                    let cut = JointPath::new(path.pieces().iter().filter_map(cut).collect::<Vec<_>>()).expect("a path");
+                    let ends = Ends { speed: [begin.ds, 0.0], hold: true };
+                    with_timing(chain, &cut, &limits(bounds), ends, 1e-3, 300, |timing| timing.is_ok())
+                };
+                let (mut low, mut high) = (begin.s + 1e-6, whole);
+                for _ in 0..24 {
+                    let middle = 0.5 * (low + high);
+                    *(if is_possible(middle) { &mut high } else { &mut low }) = middle;
+                }
+                let end = |i: usize| timing.profile(i).map(|p| p.start + p.length).expect("a segment");
+                let between = (0..timing.segments()).filter(|i| end(*i) > high && end(*i) < rest.progress.s - 1e-9).count();
+                passed[between.min(3)] += 1;
+            }
+        });
+    }
+    passed
+}
+
+/// Most stops rest at the first end that a plan reaches, nearly all others at the next.
+#[test]
+#[ignore = "wide"]
+fn stops_are_as_short_as_those_of_a_search() {
+    let all = [
+        stops(&chain::scara(), SCARA_LIMITS, [2.0, 2.0, 0.3, 3.0], 5),
+        stops(&chain::ur5(), UR5_LIMITS, [3.0; 6], 5),
+        stops(&chain::ur5().without_friction(), UR5_LIMITS, [3.0; 6], 5),
+    ];
+    println!("{all:?}");
+    assert!(all.iter().all(|[first, second, ..]| *first >= 35 && first + second >= 52), "{all:?}");
+    assert!(all[1..].iter().all(|[_, _, more @ ..]| more == &[0; 2]), "{all:?}");
+}

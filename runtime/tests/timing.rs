@@ -2,8 +2,8 @@
 
 use crate::common::chain::{self, Chain, PANDA_LIMITS, SCARA_LIMITS, UR5_LIMITS};
 use armgen_runtime::timing::{
-    time_optimal, Ends, JointFriction, JointPath, Limits, Node, PathDynamics, PathError, PathFault, Piece, Segment, Timing,
-    TimingError, TimingFault, Workspace,
+    time_optimal, Ends, JointFriction, JointPath, Limits, Node, PathDynamics, PathError, PathFault, Piece, Profile, Segment,
+    Timing, TimingError, TimingFault, Workspace,
 };
 use armgen_runtime::trajectory::Progress;
 use nalgebra::{DMatrix, DVector, SVector};
@@ -357,6 +357,79 @@ fn inertia_alone_has_the_time_of_a_trapezoid() {
     inside("trapezoid", &arm, &path(2.0), [[1.0, 100.0], [20.0, 100.0]], 2.15);
 }
 
+/// The least and the greatest u at s and x = ds² within torques; `None` where there is none.
+fn slopes<const N: usize>(chain: &Chain<N>, piece: &Piece<f64, N>, effort: f64, s: f64, x: f64) -> Option<[f64; 2]> {
+    let at = piece.at(s);
+    // Dry friction has its sign at rest, too.
+    let x = x.max(1e-14);
+    let rest = chain.torque_with_friction(&at.q, &(at.slope * x.sqrt()), &(at.curvature * x));
+    let inertial = chain.path_dynamics(&at.q, &at.slope, &at.curvature).inertial;
+    let mut found = [f64::NEG_INFINITY, f64::INFINITY];
+    for (m, rest) in inertial.iter().zip(&rest) {
+        let ends = [(-effort - rest) / m, (effort - rest) / m];
+        found = [found[0].max(ends[0].min(ends[1])), found[1].min(ends[0].max(ends[1]))];
+    }
+    (found[0] < found[1]).then_some(found)
+}
+
+/// The time of full drive until full braking (Bobrow, Dubowsky, Gibson 1985), by the method of Runge and Kutta from both ends; `None` where
+/// these two profiles do not meet.
+fn drive_and_brake<const N: usize>(chain: &Chain<N>, piece: &Piece<f64, N>, effort: f64) -> Option<f64> {
+    let steps = 2000u16;
+    let h = piece.length / f64::from(steps);
+    let profile = |from: f64, h: f64, end: usize| {
+        let slope = |s: f64, x: f64| slopes(chain, piece, effort, s, x).map(|u| 2.0 * u[end]);
+        let (mut all, mut x) = (vec![0.0], 0.0f64);
+        for i in 0..steps {
+            let s = from + h * f64::from(i);
+            let next = || {
+                let a = slope(s, x)?;
+                let b = slope(s + 0.5 * h, x + 0.5 * h * a)?;
+                let c = slope(s + 0.5 * h, x + 0.5 * h * b)?;
+                let d = slope(s + h, x + h * c)?;
+                Some(x + h / 6.0 * (a + 2.0 * b + 2.0 * c + d))
+            };
+            let Some(reached) = next().filter(|x| *x > 0.0) else { break };
+            x = reached;
+            all.push(x);
+        }
+        all
+    };
+    let (drive, brake) = (profile(piece.start, h, 1), profile(piece.end(), -h, 0));
+    let last = usize::from(steps);
+    let brake = |i: usize| brake.get(last - i).copied();
+    let switch = (1..last).find(|i| drive.get(*i).zip(brake(*i)).is_some_and(|(drive, brake)| *drive >= brake))?;
+    brake(switch - 1)?;
+    let x = |i: usize| if i < switch { drive.get(i).copied() } else { brake(i) };
+    (0..last).map(|i| Some(2.0 * h / (x(i)?.sqrt() + x(i + 1)?.sqrt()))).sum()
+}
+
+fn driven<const N: usize>(seeds: std::ops::Range<u64>) -> usize {
+    let mut found = 0;
+    for seed in seeds {
+        let mut next = random(seed);
+        let chain: Chain<N> = chain::random(&mut next);
+        let mut point = || std::array::from_fn(|_| 1.5 * next() - 0.75);
+        let (path, effort) = (line(1.0, point(), point()), 60.0);
+        let Some(exact) = drive_and_brake(&chain, &path.pieces()[0], effort) else { continue };
+        let limits = Limits::velocity([FREE; N]).unwrap().with_effort([-effort; N], [effort; N]).unwrap();
+        with_timing(&chain, &path, &limits, Ends { hold: false, ..Ends::at_rest() }, 2e-4, 1500, |timing| {
+            let timing = timing.unwrap_or_else(|error| panic!("arm {seed}: {error}"));
+            let [low, high] = [timing.lower_bound() / exact - 1.0, timing.seconds() / exact - 1.0];
+            assert!(low < 1e-5 && high > -1e-5 && high - low < 1e-3, "arm {seed}: {exact}, {low:e} {high:e}");
+        });
+        found += 1;
+    }
+    found
+}
+
+/// Made-up arms of two and three joints on lines between two postures, with viscous friction, dry friction, and such that grows with the load.
+#[test]
+fn the_time_is_that_of_full_drive_and_full_braking() {
+    let found = [driven::<2>(1..16), driven::<3>(16..31)];
+    assert!(found[0] >= 5 && found[1] >= 5, "{found:?}");
+}
+
 fn one_row() -> chain::Row {
     let friction = JointFriction::default();
     chain::Row {
@@ -417,6 +490,15 @@ fn every_fault_has_its_place() {
         assert!(matches!(error.fault, TimingFault::InfeasibleSpeed { joint: 0, .. }), "{error}");
         assert!(low <= error.s && error.s <= high, "{error}");
     }
+    // From there the arm falls back at once, with friction and without.
+    for friction in [[0.0; 2], [0.5, 0.1]] {
+        let (arm, limits) = (one_joint(false, friction, [9.81, 0.0, 0.0], 1.0), Limits::velocity([20.0]).unwrap());
+        let limits = limits.with_effort([-8.0], [8.0]).unwrap();
+        let ends = Ends { hold: false, ..Ends::at_rest() };
+        let error =
+            with_timing(&arm, &line(1.0, [1.2], [2.9]), &limits, ends, 1e-3, 400, |timing| timing.map(|_| ())).unwrap_err();
+        assert!(matches!(error.fault, TimingFault::InfeasibleSpeed { proved: true, .. }) && error.s == 0.0, "{error}");
+    }
     let fast = timed(0.0, 1.0, 15.0, Ends { speed: [21.0, 0.0], hold: false }).unwrap_err();
     assert!(matches!(fast.fault, TimingFault::InfeasibleSpeed { proved: true, .. }), "{fast}");
     let limits = Limits::velocity([FREE]).unwrap();
@@ -466,50 +548,156 @@ fn enclosures<const N: usize>(
     })
 }
 
-fn random_arms(arms: u64, places: usize, dense: usize) {
-    let (mut worst_share, mut worst_limit, mut timed, mut undecided) = (0.0f64, 0.0f64, 0, 0);
-    for seed in 0..arms {
-        let mut next = random(1000 + seed);
-        let chain: Chain<4> = chain::random(&mut next);
-        let velocity = std::array::from_fn(|_| 1.0 + 3.0 * next());
-        let effort = std::array::from_fn(|i| (30.0 + 200.0 * next()) / (1.0 + i as f64) + 20.0);
-        let limits = Limits::velocity(velocity).unwrap().with_effort(effort.map(|x: f64| -x), effort).unwrap();
-        let path = random_path(&mut next, [2.0, 2.0, 2.0, 2.0]);
-        worst_share = worst_share.max(enclosures(&chain, &limits, &path, places, &mut next));
+/// What random arms came to: the largest |f - quadratic|/error and share of a limit, paths that are timed, with a gap above 0.5 %, and
+/// neither timed nor proved impossible.
+#[derive(Default)]
+struct Tally {
+    error: f64,
+    share: f64,
+    timed: usize,
+    loose: usize,
+    undecided: usize,
+}
+
+fn random_arm<const N: usize>(seed: u64, paths: u64, places: usize, dense: usize, tally: &mut Tally) {
+    let mut next = random(1000 + seed);
+    let chain: Chain<N> = chain::random(&mut next);
+    let velocity = std::array::from_fn(|_| 1.0 + 3.0 * next());
+    let effort = std::array::from_fn(|i| (30.0 + 200.0 * next()) / (1.0 + i as f64) + 20.0);
+    let limits = Limits::velocity(velocity).unwrap().with_effort(effort.map(|x: f64| -x), effort).unwrap();
+    for number in 0..paths {
+        let path = random_path(&mut next, [2.0; N]);
+        tally.error = tally.error.max(enclosures(&chain, &limits, &path, places, &mut next));
         with_timing(&chain, &path, &limits, Ends { hold: false, ..Ends::at_rest() }, 1e-3, 1500, |timing| match timing {
             Ok(timing) => {
-                timed += 1;
-                let share = worst(&chain, &timing, velocity, [FREE; 4], effort, dense);
-                assert!(share <= 1.0 + 1e-9, "arm {seed}: {share}");
-                assert!(timing.gap() >= 0.0 && timing.gap() < 5e-3, "arm {seed}: gap {}", timing.gap());
-                worst_limit = worst_limit.max(share);
+                tally.timed += 1;
+                let share = worst(&chain, &timing, velocity, [FREE; N], effort, dense);
+                assert!(share <= 1.0 + 1e-9, "arm {seed}, path {number}: {share}");
+                assert!(timing.gap() >= 0.0, "arm {seed}, path {number}: gap {}", timing.gap());
+                // Where only momentum carries a slide that is nearly too heavy for its motor, a millionth of a torque is a percent of x.
+                tally.loose += usize::from(timing.gap() > 5e-3);
+                tally.share = tally.share.max(share);
             }
             // Neither timed nor proved impossible.
-            Err(error) if matches!(error.fault, TimingFault::TooCoarse { .. }) => undecided += 1,
+            Err(error) if matches!(error.fault, TimingFault::TooCoarse { .. }) => tally.undecided += 1,
             // A slide of a random arm may be too weak for its load.
             Err(error) => assert!(
                 matches!(error.fault, TimingFault::InfeasiblePoint { .. } | TimingFault::InfeasibleSpeed { .. }),
-                "arm {seed}: {error}"
+                "arm {seed}, path {number}: {error}"
             ),
         });
     }
+}
+
+/// Arms of four and of six joints in turn.
+fn random_arms(arms: u64, paths: u64, places: usize, dense: usize) {
+    let mut tally = Tally::default();
+    for seed in 0..arms {
+        match seed % 2 {
+            0 => random_arm::<4>(seed, paths, places, dense, &mut tally),
+            _ => random_arm::<6>(seed, paths, places, dense, &mut tally),
+        }
+    }
+    let (Tally { error, share, timed, loose, undecided }, all) = (tally, (arms * paths) as usize);
+    let left = 1.0 - share;
     println!(
-        "{timed} of {arms} arms timed, {undecided} undecided; |f - quadratic|/error at most {worst_share:.2}, limits at most 1 - {:.1e}",
-        1.0 - worst_limit
+        "{timed} of {all} timed, {loose} loosely, {undecided} undecided; |f - quadratic|/error at most {error:.2}, limits at most 1 - {left:.1e}"
     );
-    assert!(timed * 2 > arms && undecided * 10 <= arms, "{timed} timed, {undecided} undecided");
-    assert!(worst_share > 0.3, "the bound is far too large: {worst_share}");
+    assert!(
+        timed * 2 > all && loose * 50 <= all && undecided * 10 <= all,
+        "{timed} timed, {loose} loosely, {undecided} undecided"
+    );
+    assert!(error > 0.3, "the bound is far too large: {error}");
 }
 
 #[test]
 fn random_arms_keep_their_enclosures_and_limits() {
-    random_arms(4, 2000, 20);
+    random_arms(4, 1, 2000, 20);
 }
 
+/// On five paths each; `ARMGEN_RANDOM_ARMS` is another number of arms.
 #[test]
 #[ignore = "wide"]
 fn many_random_arms_keep_their_enclosures_and_limits() {
-    random_arms(100, 10_000, 100);
+    let arms = std::env::var("ARMGEN_RANDOM_ARMS").map_or(20, |text| text.parse().expect("ARMGEN_RANDOM_ARMS is a number"));
+    random_arms(arms, 5, 10_000, 100);
+}
+
+/// Laws of less torque, of one joint each, keep the limits, and so does the larger of two of them at each place; none is above the bound,
+/// and none takes less time than the lower bound.
+fn larger_of_two<const N: usize>(
+    name: &str,
+    chain: &Chain<N>,
+    (velocity, effort): ([f64; N], [f64; N]),
+    range: [f64; N],
+    paths: u64,
+) {
+    let of = |velocity, effort: [f64; N]| {
+        Limits::velocity(velocity).and_then(|of| of.with_effort(effort.map(|x| -x), effort)).expect("limits")
+    };
+    let ends = Ends { hold: false, ..Ends::at_rest() };
+    let (mut worst, mut crossings, mut pairs) = (0.0f64, 0, 0);
+    for seed in 0..paths {
+        let mut next = random(500 + seed);
+        let path = random_path(&mut next, range);
+        let mut of_less = || {
+            let mut less = (velocity, effort);
+            let (slow, weak) = ((next() * N as f64) as usize, (next() * N as f64) as usize);
+            less.0[slow] *= 0.6 + 0.4 * next();
+            less.1[weak] *= 0.6 + 0.4 * next();
+            with_timing(chain, &path, &of(less.0, less.1), ends, 1e-2, 1000, |timing| {
+                // Too little torque for its load.
+                let timing = timing.ok()?;
+                Some((0..timing.segments()).map(|i| timing.profile(i).expect("a segment")).collect::<Vec<_>>())
+            })
+        };
+        let (Some(one), Some(other)) = (of_less(), of_less()) else { continue };
+        pairs += 1;
+        let at = |law: &[Profile<f64>], s: f64| {
+            let p = law[law.partition_point(|p| p.start <= s).max(1) - 1];
+            let (t, middle) = ((s - p.start) / p.length, 0.5 * (p.x[0] + p.x[1]) + p.k);
+            let r = 1.0 - t;
+            (p.x[0] * r * r + 2.0 * middle * r * t + p.x[1] * t * t, ((middle - p.x[0]) * r + (p.x[1] - middle) * t) / p.length)
+        };
+        with_timing(chain, &path, &of(velocity, effort), ends, 1e-3, 1000, |timing| {
+            let timing = timing.expect("a timing");
+            let end = path.pieces().last().map_or(0.0, Piece::end);
+            let (mut time, mut first) = (0.0, None);
+            let places = 20_000;
+            for i in 0..places {
+                let s = end * (f64::from(i) + 0.5) / f64::from(places);
+                let (a, b) = (at(&one, s), at(&other, s));
+                let (x, u) = if a.0 >= b.0 { a } else { b };
+                crossings += usize::from(first.is_some_and(|first| first != (a.0 >= b.0)));
+                first = Some(a.0 >= b.0);
+                time += end / f64::from(places) / x.sqrt();
+                let at = timing.reference(&Progress { s, ds: x.sqrt(), dds: u });
+                let tau = chain.torque_with_friction(&at.q, &at.dq, &at.ddq);
+                for j in 0..N {
+                    worst = worst.max(at.dq[j].abs() / velocity[j]).max(tau[j].abs() / effort[j]);
+                }
+            }
+            for i in 0..timing.segments() {
+                let p = timing.profile(i).expect("a segment");
+                let x = at(&one, p.start).0.max(at(&other, p.start).0);
+                assert!(x <= p.bound * (1.0 + 1e-9), "{name}, path {seed}, segment {i}: {x} above {}", p.bound);
+            }
+            // The sum over the places misses a little of the time at rest.
+            assert!(
+                time * (1.0 + 1e-2) >= timing.lower_bound(),
+                "{name}, path {seed}: {time} s are less than {}",
+                timing.lower_bound()
+            );
+        });
+    }
+    println!("{name}: {pairs} pairs of laws, {crossings} crossings, share 1 - {:.1e}", 1.0 - worst);
+    assert!(worst <= 1.0 + 1e-9 && pairs * 2 > paths as usize && crossings > 0, "{name}: {worst}");
+}
+
+#[test]
+fn the_larger_of_two_laws_is_a_law() {
+    larger_of_two("scara", &chain::scara(), SCARA_LIMITS, [2.5, 2.5, 0.3, 3.0], 3);
+    larger_of_two("ur5, friction", &chain::ur5(), UR5_LIMITS, [3.0; 6], 2);
 }
 
 #[test]
@@ -569,4 +757,58 @@ fn a_jump_of_curvature_bounds_each_side_by_itself() {
         println!("possible in {possible}, at least {}, found {}", timing.lower_bound(), timing.seconds());
         assert!(timing.lower_bound() <= possible * (1.0 + 1e-7) && timing.gap() < 2e-3);
     });
+}
+
+/// Coefficients, lengths and limits of any size, signs at random: an error or a motion within its limits.
+fn strange<const N: usize>(chain: &Chain<N>, count: u64) -> usize {
+    let sizes = [0.0, 5e-324, 1e-310, 1e-160, 1e-30, 1e-9, 1e-3, 0.5, 1.0, 1.0, 1.0, 2.0, 30.0, 1e6, 1e12, 1e40, 1e160, f64::MAX];
+    let mut timed = 0;
+    for seed in 0..count {
+        let mut next = random(7000 + seed);
+        // Most numbers are of a usual size.
+        let mut any = |strange: f64| {
+            let usual = next() > strange;
+            let size = if usual { 0.1 + next() } else { sizes[(next() * sizes.len() as f64) as usize] };
+            size * if next() < 0.5 { -1.0 } else { 1.0 }
+        };
+        let share = [0.01, 0.05, 0.3][seed as usize % 3];
+        let (mut start, mut pieces) = (any(share), Vec::new());
+        for _ in 0..1 + seed % 3 {
+            let length = any(share).abs();
+            let mut coefficients = [SVector::zeros(); 6].map(|of: SVector<f64, N>| of.map(|_| any(share)));
+            if let Some(last) = pieces.last().map(|last: &Piece<f64, N>| last.at(last.end())).filter(|_| any(0.0) > 0.0) {
+                (coefficients[0], coefficients[1]) = (last.q, last.slope);
+            }
+            pieces.push(Piece { start, length, coefficients });
+            start += length;
+        }
+        let (velocity, effort) = ([(); N].map(|()| any(share).abs() * 3.0), [(); N].map(|()| any(share).abs() * 100.0));
+        let Ok(path) = JointPath::new(pieces) else { continue };
+        let Ok(limits) = Limits::velocity(velocity).and_then(|of| of.with_effort(effort.map(|x| -x), effort)) else { continue };
+        let speed = if seed % 5 == 0 { [any(0.5).abs(), any(0.5).abs()] } else { [0.0; 2] };
+        with_timing(chain, &path, &limits, Ends { speed, hold: false }, 1e-2, 300, |timing| {
+            let Ok(timing) = timing else { return };
+            timed += 1;
+            assert!(timing.seconds() > 0.0 && timing.lower_bound() <= timing.seconds(), "{seed}: {}", timing.seconds());
+            for i in 0..timing.segments() {
+                for t in [0.01, 0.3, 0.7, 0.99] {
+                    let at = timing.reference(&timing.at(i, t).expect("a segment"));
+                    let tau = chain.torque_with_friction(&at.q, &at.dq, &at.ddq);
+                    for j in 0..N {
+                        let share = (at.dq[j].abs() / velocity[j]).max(tau[j].abs() / effort[j]);
+                        assert!(share <= 1.0 + 1e-9, "{seed}, joint {j}, segment {i} at {t}: {share}");
+                    }
+                }
+            }
+        });
+    }
+    timed
+}
+
+#[test]
+fn strange_numbers_are_an_error_or_a_motion() {
+    let slide = one_joint(true, [1.0, 0.5], [0.0; 3], 2.0);
+    let timed = [strange(&slide, 3000), strange(&chain::scara(), 1000)];
+    println!("{timed:?} are timed");
+    assert!(timed.iter().all(|timed| *timed > 20), "{timed:?}");
 }

@@ -206,6 +206,8 @@ struct Program<'a, T, const N: usize, const R: usize, const K: usize> {
     g: &'a SVector<T, N>,
     rows: &'a [SMatrix<T, R, N>; K],
     bounds: &'a [SVector<T, R>; K],
+    /// The sums of |c_i|.
+    sums: [SVector<T, R>; K],
     /// The size of x: its largest element since it was refined last.
     size: T,
     /// The largest element of x on its whole way, the unconstrained optimum included.
@@ -214,45 +216,35 @@ struct Program<'a, T, const N: usize, const R: usize, const K: usize> {
 
 impl<T: RealField + Copy, const N: usize, const R: usize, const K: usize> Program<'_, T, N, R, K> {
     fn row(&self, (block, row): Place) -> SVector<T, N> {
-        let mut c = SVector::zeros();
-        if let Some(rows) = self.rows.get(block) {
-            for i in 0..R {
-                if i == row {
-                    c = rows.row(i).transpose();
-                }
-            }
-        }
-        c
+        let rows = self.rows.get(block);
+        SVector::from_fn(|k, _| rows.and_then(|rows| rows.get((row, k))).copied().unwrap_or_else(T::zero))
     }
 
-    /// c' x - b of a row, and the size of its terms.
-    fn slack(&self, (block, row): Place, x: &SVector<T, N>) -> (T, T) {
-        let (mut value, mut size) = (T::zero(), T::zero());
-        if let (Some(rows), Some(bounds)) = (self.rows.get(block), self.bounds.get(block)) {
-            for i in 0..R {
-                if i == row {
-                    value = -bounds[i];
-                    size = bounds[i].abs();
-                    for k in 0..N {
-                        value += rows[(i, k)] * x[k];
-                        size += rows[(i, k)].abs() * self.size;
-                    }
-                }
-            }
+    /// c' x - b of a row.
+    fn slack(&self, (block, row): Place, x: &SVector<T, N>) -> T {
+        let bound = self.bounds.get(block).and_then(|bounds| bounds.get(row)).copied().unwrap_or_else(T::zero);
+        self.row((block, row)).dot(x) - bound
+    }
+
+    /// c' x - b of all rows of block `k`, and the sizes of their terms.
+    fn slacks(&self, k: usize, x: &SVector<T, N>) -> [SVector<T, R>; 2] {
+        match (self.rows.get(k), self.bounds.get(k), self.sums.get(k)) {
+            (Some(rows), Some(bounds), Some(sums)) => [rows * x - bounds, sums * self.size + bounds.abs()],
+            _ => [SVector::zeros(); 2],
         }
-        (value, size)
     }
 
     /// The row that `x` violates most, by the size of its terms; rows of `left_out` do not count.
     fn most_violated(&self, x: &SVector<T, N>, left_out: &[[bool; R]; K]) -> Option<Place> {
         let mut worst: Option<(T, Place)> = None;
         for k in 0..K {
+            let [values, sizes] = self.slacks(k, x);
             for i in 0..R {
-                if left_out[k][i] || !self.bounds[k][i].is_finite() {
+                let (value, size) = (values[i], sizes[i]);
+                if !(value < -(tolerance::<T>() * size)) || left_out[k][i] || !self.bounds[k][i].is_finite() {
                     continue;
                 }
-                let (value, size) = self.slack((k, i), x);
-                if value < -(tolerance::<T>() * size) && worst.is_none_or(|(before, _)| value / size < before) {
+                if worst.is_none_or(|(before, _)| value / size < before) {
                     worst = Some((value / size, (k, i)));
                 }
             }
@@ -278,7 +270,7 @@ impl<T: RealField + Copy, const N: usize, const R: usize, const K: usize> Progra
         let mut y = along;
         for i in 0..N {
             if i < active.count {
-                let mut sum = -self.slack(active.rows[i], x).0;
+                let mut sum = -self.slack(active.rows[i], x);
                 for k in 0..i {
                     sum -= active.r[(k, i)] * y[k];
                 }
@@ -326,10 +318,11 @@ impl<T: RealField + Copy, const N: usize, const R: usize, const K: usize> Progra
         let relative = |value: T, size: T| if value > T::zero() { value / size } else { T::zero() };
         let mut residual = relative(gradient.amax(), size);
         for k in 0..K {
+            let [slacks, sizes] = self.slacks(k, &x);
             for i in 0..R {
                 if self.bounds[k][i].is_finite() {
-                    let (slack, size) = self.slack((k, i), &x);
-                    residual = residual.max(relative(if is_active[k][i] { slack.abs() } else { -slack }, size));
+                    let slack = slacks[i];
+                    residual = residual.max(relative(if is_active[k][i] { slack.abs() } else { -slack }, sizes[i]));
                 }
             }
         }
@@ -370,7 +363,8 @@ pub fn quadratic_program<T: RealField + Copy, const N: usize, const R: usize, co
     if !(is_finite(&x) && is_finite(&j)) {
         return Err(NoOptimum::NotFinite);
     }
-    let mut program = Program { h, g, rows, bounds, size: x.amax(), largest: x.amax() };
+    let sums = core::array::from_fn(|k| rows.get(k).map_or_else(SVector::zeros, |rows| rows.abs().column_sum()));
+    let mut program = Program { h, g, rows, bounds, sums, size: x.amax(), largest: x.amax() };
     let mut active = Active { j, r: SMatrix::zeros(), rows: [(0, 0); N], multipliers: SVector::zeros(), count: 0 };
     // Rows that repeat active ones to rounding.
     let mut left_out = [[false; R]; K];
@@ -403,7 +397,7 @@ pub fn quadratic_program<T: RealField + Copy, const N: usize, const R: usize, co
                     }
                 }
                 let is_dependent = active.count >= N || !(beside.norm() > tolerance::<T>() * d.norm());
-                let (slack, _) = program.slack(row, &x);
+                let slack = program.slack(row, &x);
                 let whole = -slack / beside.norm_squared();
                 steps += 1;
                 match first {

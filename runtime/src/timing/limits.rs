@@ -15,9 +15,9 @@ impl<T: RealField + Copy, const N: usize> Limits<T, N> {
     /// Limits of |dq|, rad/s or m/s; `VELOCITY_LIMITS` of an emitted robot.
     ///
     /// # Errors
-    /// Where a limit is not positive.
+    /// Where a limit is not positive, or its square is no number.
     pub fn velocity(limits: [T; N]) -> Result<Self, SettingError> {
-        positive_or_infinite(Setting::RateLimit, &SVector::from(limits))?;
+        usable(Setting::RateLimit, limits)?;
         let infinite = T::one() / T::zero();
         Ok(Self { velocity: limits, acceleration: [infinite; N], effort: [[-infinite, infinite]; N] })
     }
@@ -25,23 +25,34 @@ impl<T: RealField + Copy, const N: usize> Limits<T, N> {
     /// And of |ddq|, rad/s² or m/s².
     ///
     /// # Errors
-    /// Where a limit is not positive.
+    /// Where a limit is not positive, or its square is no number.
     pub fn with_acceleration(self, limits: [T; N]) -> Result<Self, SettingError> {
-        positive_or_infinite(Setting::AccelerationLimit, &SVector::from(limits))?;
+        usable(Setting::AccelerationLimit, limits)?;
         Ok(Self { acceleration: limits, ..self })
     }
 
     /// And of the torque (force) at the joint, `lower <= tau <= upper`, N m or N; `EFFORT_LIMITS` of an emitted robot bound both sides.
     ///
     /// # Errors
-    /// Where the upper limit is not positive or the lower one not negative.
+    /// Where the upper limit is not positive or the lower one not negative, or the square of one is no number.
     pub fn with_effort(self, lower: [T; N], upper: [T; N]) -> Result<Self, SettingError> {
-        positive_or_infinite(Setting::TorqueLimit, &SVector::from(upper))?;
-        positive_or_infinite(Setting::TorqueLimit, &-SVector::from(lower))?;
+        usable(Setting::TorqueLimit, upper)?;
+        usable(Setting::TorqueLimit, lower.map(|limit| -limit))?;
         let mut effort = [[T::zero(); 2]; N];
         for ((to, lower), upper) in effort.iter_mut().zip(lower).zip(upper) {
             *to = [lower, upper];
         }
         Ok(Self { effort, ..self })
     }
+}
+
+/// Positive or infinite, and neither so small nor, if finite, so large that squares of numbers of this size are none.
+fn usable<T: RealField + Copy, const N: usize>(setting: Setting, limits: [T; N]) -> Result<(), SettingError> {
+    let (eps, zero, infinite) = (T::default_epsilon(), T::zero(), T::one() / T::zero());
+    let judged = limits.map(|limit| match limit {
+        _ if limit < eps * eps => zero,
+        _ if limit * eps * eps > T::one() && limit < infinite => zero / zero,
+        _ => limit,
+    });
+    positive_or_infinite(setting, &SVector::from(judged))
 }

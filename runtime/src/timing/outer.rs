@@ -149,8 +149,9 @@ impl<T: RealField + Copy, const N: usize> Side<T, N> {
         for _ in 0..200 {
             let low = if curved { x * (T::one() - share) } else { T::zero() };
             let (above, below) = (Line::tangent(x.max(lit(1e-30)).sqrt()), Line::chord(low, x));
-            let mut high: (T, T, usize) = (huge(), T::zero(), 0);
-            let mut least: (T, T, usize) = (-huge::<T>(), T::zero(), 0);
+            // u of the row that bounds it most at x, its value at x = 0 and its slope, and the row.
+            let mut high = (huge::<T>(), huge::<T>(), T::zero(), 0);
+            let mut least = (-huge::<T>(), -huge::<T>(), T::zero(), 0);
             let mut flat: Option<(T, usize)> = None;
             let rows = self.rows.as_flattened().get(..self.count).unwrap_or(&[]);
             for (row, curve) in rows.iter().zip(self.curves.as_flattened()) {
@@ -174,28 +175,29 @@ impl<T: RealField + Copy, const N: usize> Side<T, N> {
                     }
                     continue;
                 }
-                let (u, slope) = ((rest - c * x) / row.m, -c / row.m);
+                let u = (rest - c * x) / row.m;
                 if row.m > T::zero() {
                     if u < high.0 {
-                        high = (u, slope, index);
+                        high = (u, rest / row.m, -c / row.m, index);
                     }
                 } else if u > least.0 {
-                    least = (u, slope, index);
+                    least = (u, rest / row.m, -c / row.m, index);
                 }
             }
             size = if high.0 < huge() { high.0.abs() } else { T::zero() };
             size = size.max(if least.0 > -huge::<T>() { least.0.abs() } else { T::zero() });
             let width = high.0 - least.0;
-            let (mut next, mut culprit) = (x, high.2);
+            let (mut next, mut culprit) = (x, high.3);
             if let Some((at, index)) = flat {
                 (next, culprit) = (at, index);
             } else if width < T::zero() {
-                let slope = high.1 - least.1;
+                let slope = high.2 - least.2;
                 // The row that gravity or friction breaks by itself is the one with the smaller share of m.
-                if least.1.abs() > high.1.abs() {
-                    culprit = least.2;
+                if least.2.abs() > high.2.abs() {
+                    culprit = least.3;
                 }
-                next = if slope < T::zero() { x - width / slope } else { -T::one() };
+                // Where both rows meet, and not a step from x: from a huge x that rounds by more than the result.
+                next = if slope < T::zero() { (high.1 - least.1) / -slope } else { -T::one() };
             }
             if next >= x * (T::one() - T::default_epsilon() * lit(16.0)) {
                 return (NodeBound::AtMost(x), size);
@@ -222,13 +224,13 @@ fn barrier<T: RealField + Copy>(row: &Row<T>, h: T, x0: T, estimate: T) -> Optio
         return None;
     }
     let half = lit::<T>(0.5);
-    let mut law = Law { length: h, x0, k: T::zero(), x2: estimate.max(T::zero()) };
+    let mut law = Law { length: h, x0, k: T::zero(), x2: estimate };
     let slack = row.bound.abs() * lit(ROUNDING);
     // How far the coefficients of the law may lie outside what the line over the root and the error assume.
     let mut margin = lit::<T>(1e-2);
     for _ in 0..8 {
         let coefficients = [law.x0, law.middle(), law.x2];
-        let most = coefficients.iter().fold(T::zero(), |m, x| m.max(*x)) * (T::one() + margin);
+        let most = coefficients.iter().fold(T::zero(), |m, x| m.max(x.abs())) * (T::one() + margin);
         let least = coefficients.iter().fold(most, |m, x| m.min(*x)).max(T::zero()) * (T::one() - margin);
         let slope = law.acceleration().iter().fold(T::zero(), |m, u| m.max(u.abs())) * lit(1.1);
         if !(most > T::zero()) {
@@ -255,13 +257,12 @@ fn barrier<T: RealField + Copy>(row: &Row<T>, h: T, x0: T, estimate: T) -> Optio
         if !x2.is_finite() {
             return None;
         }
-        if x2 < T::zero() {
-            // Not even rest at the right end: without such friction this is exact; with it, x is bounded by a chord from zero.
-            return (!row.is_curved()).then_some(law);
-        }
-        let holds = |x: T| x <= most && (x >= least || !row.is_curved());
-        let kept = [law.x0, law.middle(), law.x2].iter().all(|x| holds(*x) && x.abs() <= most);
-        if kept && law.acceleration().iter().all(|u| u.abs() <= slope) && (!row.is_curved() || law.middle() >= T::zero()) {
+        let coefficients = [law.x0, law.middle(), law.x2];
+        // Where the law ends below zero, nothing gets to its zero, and before that the chord from zero holds.
+        let is_below = x2 < T::zero() && least == T::zero();
+        let reaches = |x: T| x.abs() <= most && (x >= least || is_below || !row.is_curved());
+        let kept = coefficients.iter().all(|x| reaches(*x)) && law.acceleration().iter().all(|u| u.abs() <= slope);
+        if kept && (is_below || !row.is_curved() || law.middle() >= T::zero()) {
             return Some(law);
         }
         margin = (margin * lit(2.0)).min(half);

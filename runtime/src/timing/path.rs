@@ -121,9 +121,9 @@ pub struct PathError {
 pub enum PathFault {
     /// There is no piece.
     Empty,
-    /// A number is infinite or NaN.
+    /// A number is infinite, NaN, or so large or small that its square is none.
     NotFinite,
-    /// A piece has no length, or no joint moves on it.
+    /// A piece has no length, or no joint moves on it; within rounding, too.
     ZeroLength,
     /// A piece does not begin where the one before it ends, in s.
     Gap,
@@ -151,7 +151,7 @@ messages! { PathError,
 
 messages! { PathFault,
     PathFault::Empty => "the path has no piece";
-    PathFault::NotFinite => "a number is infinite or NaN";
+    PathFault::NotFinite => "a number is infinite, NaN, or far too large or small";
     PathFault::ZeroLength => "nothing moves here: leave the piece out; a pause belongs between two timings";
     PathFault::Gap => "the piece does not begin where the one before it ends";
     PathFault::Jump { joint, by } => "joint {} jumps by {}", joint + 1, by;
@@ -188,10 +188,14 @@ impl<T: RealField + Copy, const N: usize, S: AsRef<[Piece<T, N>]>> JointPath<T, 
         for (i, piece) in all.iter().enumerate() {
             let moves = (0..N).map(|joint| polynomial::largest(&polynomial::derivative(&piece.joint(joint)), piece.length));
             let moves = moves.fold(T::zero(), |sum, rate| sum + rate);
-            if !(piece.length > T::zero()) || !(moves > T::zero()) {
+            let (way, widest) = (moves * piece.length, range.iter().fold(T::zero(), |most, of| most.max(*of)));
+            let (eps, tolerance) = (T::default_epsilon(), lit::<T>(JUMP) * piece.start.abs());
+            // Within rounding of s or of q, too.
+            if !(piece.length > tolerance.max(piece.start.abs() * eps * lit(64.0))) || !(way > widest * eps * lit(4.0)) {
                 return Err(fault(piece.start, i, PathFault::ZeroLength));
             }
-            if !moves.is_finite() {
+            // Squares of rates and of their reciprocals are numbers.
+            if ![piece.length, moves, way].iter().all(|size| (eps * eps..=T::one() / (eps * eps)).contains(size)) {
                 return Err(PathError { s: f64::NAN, piece: i, fault: PathFault::NotFinite });
             }
             if let Some(s) = rest(piece, moves, i == 0, i + 1 == all.len()) {

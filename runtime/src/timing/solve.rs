@@ -193,7 +193,8 @@ impl<T: RealField + Copy, const N: usize> Solver<'_, T, N> {
                 }
             }
         }
-        let [start, end] = self.ends.speed.map(|v| v * v);
+        // Rounded upwards.
+        let [start, end] = self.ends.speed.map(|v| v * v * (T::one() + T::default_epsilon() * lit(4.0)));
         for (given, i) in [(start, 0), (end, count)] {
             let Some((segment, is_end)) = beside(segments, i) else { continue };
             let node = segments.get(i).map_or(given, |of| of.bound.node);
@@ -517,7 +518,7 @@ fn order<T: RealField + Copy>(barriers: &[Option<Barrier<T>>; 3]) -> [Option<Law
     laws
 }
 
-/// The fraction of a segment at which a law that ends below zero gets there.
+/// The fraction of a segment at which a law that ends below zero gets there, from below.
 fn zero_of<T: RealField + Copy>(law: &Law<T>) -> T {
     let (mut left, mut right) = (T::zero(), T::one());
     for _ in 0..60 {
@@ -528,7 +529,7 @@ fn zero_of<T: RealField + Copy>(law: &Law<T>) -> T {
             right = middle;
         }
     }
-    right
+    left
 }
 
 /// The law seen from the other end.
