@@ -79,7 +79,7 @@ pub(crate) fn goes_with(file: &Path, text: &str) -> Option<String> {
     with.or_else(|| is_none.then(|| "a module".to_owned()))
 }
 
-/// The possible companions of a module, each with its option.
+/// The possible companions of a module, each with its option. Of named end effectors, whose names an earlier description gave, those that exist.
 pub(crate) fn beside(module: &Path, language: Language) -> Vec<(PathBuf, &'static str)> {
     let name = name_of(module);
     // Companions of inverse kinematics are companions of the module, too.
@@ -87,12 +87,27 @@ pub(crate) fn beside(module: &Path, language: Language) -> Vec<(PathBuf, &'stati
         let [before, behind] = companion.with;
         between(name, [before, behind.trim_start_matches("_ik")])
     };
+    let folder = module.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
+    let entries = std::fs::read_dir(folder).into_iter().flatten().flatten();
+    let mut there: Vec<String> = entries.filter_map(|entry| entry.file_name().into_string().ok()).collect();
+    there.sort();
+    // `robot_left_ik.rs` of the module robot.rs, unless there is a module robot_left.rs.
+    let of_tips = |companion: &Companion, stem: &str| -> Vec<String> {
+        let ([before, behind], [_, extension]) = (companion.file, companion.with.map(|text| text.trim_start_matches("_ik")));
+        let is_of_tip = |file: &&String| {
+            let tip = between(file, [&format!("{before}{stem}_"), behind]);
+            tip.is_some_and(|tip| !there.contains(&format!("{stem}_{tip}{extension}")))
+        };
+        there.iter().filter(is_of_tip).filter(|_| behind.starts_with("_ik")).cloned().collect()
+    };
     let all = COMPANIONS.iter().filter(|companion| companion.language == language);
-    all.filter_map(|companion| {
-        let [before, behind] = companion.file;
-        Some((module.with_file_name(format!("{before}{}{behind}", stem_of(companion)?)), companion.flag))
-    })
-    .collect()
+    all.filter_map(|companion| Some((companion, stem_of(companion)?)))
+        .flat_map(|(companion, stem)| {
+            let [before, behind] = companion.file;
+            let own = std::iter::once(format!("{before}{stem}{behind}")).chain(of_tips(companion, stem));
+            own.map(|file| (module.with_file_name(file), companion.flag)).collect::<Vec<_>>()
+        })
+        .collect()
 }
 
 /// The file and the hash that a text says it was made from.

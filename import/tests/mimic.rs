@@ -155,7 +155,26 @@ fn where_branches_are_too_many_followers_have_no_end_effector() {
     assert_eq!((arm.joints.len(), arm.dof(), arm.tips.len()), (11, 10, 8));
     let line = "without an end effector, since the last joint follows another one: `far_link` (3 joints)";
     assert!(imported.report.lines().iter().any(|found| found == line), "{:?}", imported.report.lines());
-    let (none, diagnostics) = import(&hand(""), &all);
+}
+
+/// Of nine branches that move by themselves, the shortest one has no end effector, and still all of its joints; more than 32 are no robot.
+#[test]
+fn where_branches_are_too_many_the_last_have_no_end_effector() {
+    let hand = |fingers: usize| {
+        let mut joints = vec![joint("wrist", "revolute", "base", ""), joint("thumb", "revolute", "wrist_link", "")];
+        for k in 1..fingers {
+            joints.push(joint(&format!("near{k}"), "revolute", "wrist_link", ""));
+            joints.push(joint(&format!("far{k}"), "revolute", &format!("near{k}_link"), ""));
+        }
+        robot(&joints)
+    };
+    let all = Options { all: true, ..Options::default() };
+    let imported = imported(&hand(9), &all);
+    let arm = valid(&imported.yaml);
+    assert_eq!((arm.joints.len(), arm.tips.len()), (18, 8));
+    let line = "without an end effector, since a robot has at most 8, which `--tip` chooses: `thumb_link` (2 joints)";
+    assert!(imported.report.lines().iter().any(|found| found == line), "{:?}", imported.report.lines());
+    let (none, diagnostics) = import(&hand(33), &all);
     assert!(none.is_none() && diagnostics.iter().any(|fault| fault.code.name() == "several-tips"));
 }
 

@@ -144,7 +144,7 @@ fn arm(source: &Source, description: &RobotDescription, manipulator: &Manipulato
         let found = match &solved.found {
             Ok(found) => format!("{}: at most {}", found.class, counted(found.most, "solution")),
             // Two lines always have a common normal, which a row of 17 digits holds where no short number does.
-            Err(reason) => match rows::solved(source).filter(|_| solved.tip.is_none()) {
+            Err(reason) => match rows::solved(source, solved.tip.as_deref()) {
                 Some(found) => format!(
                     "of the rows that `armgen convert --convention standard` writes: {}, at most {}",
                     found.class,

@@ -181,7 +181,7 @@ pub(crate) fn run(file: &Path, out: Option<&Path>, choices: &Choices, beside: &B
             ));
             return FAULTY;
         }
-        let remedy = match rows::solved(&source).filter(|_| solved.tip.is_none()) {
+        let remedy = match rows::solved(&source, solved.tip.as_deref()) {
             Some(_) => format!("; the rows that `armgen convert {} --convention standard` writes have one", source.name()),
             None => String::new(),
         };

@@ -232,7 +232,7 @@ fn note_inverse_kinematics(source: &Source, options: &Options, description: &Sou
         terminal::note(&line);
     }
     let Err(reason) = found else { return };
-    match rows::solved(description) {
+    match rows::solved(description, None) {
         Some(found) => terminal::note(&format!(
             "inverse kinematics are those of its rows, of 17 digits: import it with `--convention standard`: {}",
             found.class

@@ -131,6 +131,23 @@ fn companions_of_another_description_are_told() {
     assert!(err(&output).contains("is of another description: it was made from scara4.yaml (input "), "{}", err(&output));
 }
 
+/// Inverse kinematics of end effectors that the description of today does not name.
+#[test]
+fn inverse_kinematics_of_earlier_end_effectors_is_told() {
+    let folder = folder("stale_tips");
+    let path = |name: &str| folder.join(name).to_str().expect("UTF-8").to_owned();
+    let module = path("robot.rs");
+    check(&["generate", &file("tests/data/trees/two_hands.yaml"), "--out", &module, "--ik"], 0);
+    let told = |name: &str| {
+        let output = check(&["generate", &file("robots/scara4.yaml"), "--out", &module], 0);
+        err(&output).contains(&format!("{} was not written again and is of another description: --ik renews it", path(name)))
+    };
+    assert!(told("robot_left_hand_ik.rs") && told("robot_right_hand_ik.rs"));
+    // A module of its own name has it.
+    check(&["generate", &file("robots/scara4.yaml"), "--out", &path("robot_left_hand.rs")], 0);
+    assert!(!told("robot_left_hand_ik.rs") && told("robot_right_hand_ik.rs"));
+}
+
 /// An arm whose last joint turns about the axis that `pointing` leaves open, and one whose task is no target.
 #[test]
 fn an_arm_without_inverse_kinematics_is_told() {

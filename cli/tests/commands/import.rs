@@ -123,5 +123,15 @@ fn rounded_angles_are_told_what_restores_closed_forms() {
         assert!(!said.contains("no inverse kinematics"), "{name}: {said}");
         let checked = out(&check(&["check", yaml.to_str().expect("UTF-8")], 0));
         assert!(!checked.contains("none: a link is no row"), "{name}: {checked}");
+        // An end effector with a name has what one without has.
+        let named = folder.join(format!("named.{name}.yaml"));
+        let (urdf, named) = (urdf.to_str().expect("UTF-8"), named.to_str().expect("UTF-8"));
+        check(&["import", urdf, "--tip", "hand=l6", "--out", named], 0);
+        let (words, told) =
+            (|text: &str| text.split_whitespace().collect::<Vec<_>>().join(" "), out(&check(&["check", named], 0)));
+        let line = |text: &str| {
+            words(text).split("inverse kinematics ").nth(1).expect("a line").split(" named").next().map(str::to_owned)
+        };
+        assert_eq!(line(&told), line(&checked).map(|found| format!("hand, {found}")), "{name}: {told}");
     }
 }

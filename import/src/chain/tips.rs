@@ -1,9 +1,10 @@
 //! Which link is the tip where the user does not say: the only one that it can be.
 
+use std::cmp::Reverse;
 use std::collections::BTreeMap;
 
 use armgen_codegen::diagnostic::{Diagnostic, Diagnostics};
-use armgen_codegen::kinds::MAX_TIPS;
+use armgen_codegen::kinds::{MAX_JOINTS, MAX_TIPS};
 
 use super::locks::Locks;
 use super::names;
@@ -103,13 +104,14 @@ pub(super) fn only(tree: &Tree, base: usize, locks: &Locks, diagnostics: &mut Di
 pub(super) struct Ends {
     /// Links that carry an end effector.
     pub(super) tips: Vec<usize>,
-    /// Further links, which joints move that follow others.
+    /// Further links, without an end effector.
     pub(super) others: Vec<usize>,
     pub(super) notes: Vec<String>,
 }
 
 /// All leaves that a joint moves, those that differ by fixed joints alone once, in the order of the file. Where they are too many, those on
-/// joints that follow others have no end effector; the link where their branches begin has it.
+/// joints that follow others have no end effector; the link where their branches begin has it. Of those that are still too many, the last have
+/// none.
 pub(super) fn all(tree: &Tree, base: usize, locks: &Locks, diagnostics: &mut Diagnostics) -> Option<Ends> {
     let groups = leaves(tree, base, locks);
     let best = |leaves: &Vec<Candidate>| {
@@ -148,7 +150,9 @@ pub(super) fn all(tree: &Tree, base: usize, locks: &Locks, diagnostics: &mut Dia
             (ends, others) = (own, led);
         }
     }
-    if let Some(more) = ends.len().checked_sub(MAX_TIPS).filter(|more| *more > 0) {
+    // More ends than joints that a robot may have: nothing of it can be taken whole.
+    if ends.len() > MAX_JOINTS {
+        let more = ends.len() - MAX_TIPS;
         let message = format!(
             "{} branches end with a link that moves, more than the {MAX_TIPS} end effectors that a robot has",
             ends.len()
@@ -156,6 +160,18 @@ pub(super) fn all(tree: &Tree, base: usize, locks: &Locks, diagnostics: &mut Dia
         let help = format!("name up to {MAX_TIPS} by `--tip`, or lock joints of {more} branches with `--lock JOINT=0`");
         diagnostics.push(Diagnostic::new(Code::SeveralTips, tree.links[ends[MAX_TIPS].link].span, message, "one too many", help));
         return None;
+    }
+    if ends.len() > MAX_TIPS {
+        // Tools first, then the longest chains; what follows last.
+        let followers = locks.all_followers();
+        let tool = |end: &Candidate| names::tool(&tree.links[end.link].name).unwrap_or(usize::MAX);
+        ends.sort_by_key(|end| (followers.contains(&end.last), tool(end), Reverse(end.joints), end.last));
+        let more = ends.split_off(MAX_TIPS);
+        notes.push(format!(
+            "without an end effector, since a robot has at most {MAX_TIPS}, which `--tip` chooses: {}",
+            named(&more)
+        ));
+        others.extend(more);
     }
     ends.sort_by_key(|end| end.last);
     notes.insert(0, format!("end effectors: {}", named(&ends)));
