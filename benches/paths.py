@@ -1,10 +1,11 @@
 #!/usr/bin/env python3
-"""Random paths timed by armgen and by toppra: ./paths.py ARMGEN [PATHS]
+"""Random paths timed by armgen, by toppra and by copp: ./paths.py ARMGEN [PATHS]
 
 Splines through five random points for the Panda and the UR5, with limits of speed and torque. Of each: the duration above the lower bound
 of `armgen time`, and by how much speeds and torques exceed their limits at 40 000 places, by the emitted Python module. `armgen time`
 proves that its own exceed none. The time of armgen is that of the program, with reading and derivation (`cargo bench --bench timing`
-has that of the solution); that of toppra is `compute_trajectory` without the arm's coefficients. Needs NumPy and toppra 0.6.10 (PyPI).
+has that of the solution); that of toppra is `compute_trajectory`, that of copp `topp2_ra.solve`, both without the arm's coefficients. Needs
+NumPy, toppra 0.6.10 and copp-py 0.2.3 (PyPI).
 """
 
 import importlib.util
@@ -16,6 +17,7 @@ import sys
 import tempfile
 import time
 
+import copp_py as copp
 import numpy as np
 import toppra
 from toppra.constraint import DiscretizationType, JointTorqueConstraint, JointVelocityConstraint
@@ -80,6 +82,26 @@ def by_toppra(module, path, velocity, effort, intervals, scheme):
     return trajectory.duration, seconds, excess(module, states, velocity, effort)
 
 
+def by_copp(module, path, velocity, effort, stations):
+    """Duration, seconds and excess; ds^2 is linear between stations."""
+    s = np.linspace(*path.path_interval, stations)
+    robot = copp.Robot(len(effort), inverse_dynamics=lambda *state: module.inverse_dynamics(*(x[None] for x in state))[0])
+    robot.append_s(s)
+    robot.set_q(*(path(s, order) for order in range(3)), 0)
+    robot.add_velocity_limits(velocity, -velocity, start_idx_s=0)
+    robot.add_torque_limits(effort, -effort, start_idx_s=0)
+    problem = copp.solver.topp2_ra.Problem(robot.constraints, idx_s_interval=(0, stations - 1), a_boundary=(0.0, 0.0))
+    begin = time.perf_counter()
+    squares = copp.solver.topp2_ra.solve(problem)
+    seconds = time.perf_counter() - begin
+    duration, times = copp.interpolation.s_to_t_topp2(s, squares)
+    at = np.linspace(*path.path_interval, PLACES + 2)[1:-1]
+    square = np.interp(at, s, squares)[:, None]
+    slope = (np.diff(squares) / np.diff(s) / 2)[np.searchsorted(s, at, side="right") - 1][:, None]
+    q, first, second = (path(at, order) for order in range(3))
+    return duration, seconds, excess(module, (q, first * np.sqrt(square), first * slope + second * square), velocity, effort)
+
+
 def main():
     armgen = pathlib.Path(sys.argv[1]).resolve()
     paths = int(sys.argv[2]) if len(sys.argv) > 2 else 20
@@ -103,13 +125,15 @@ def main():
                     found = by_toppra(module, path, velocity, effort, intervals, scheme)
                     row = found and (found[0] / bound - 1, *found[1:])
                     rows.setdefault(f"toppra, {intervals} intervals, {name}", []).append(row)
+                found = by_copp(module, path, velocity, effort, intervals)
+                rows.setdefault(f"copp, {intervals} stations", []).append((found[0] / bound - 1, *found[1:]))
         for name, all_runs in rows.items():
             runs = [run for run in all_runs if run]
             above, seconds = [run[0] for run in runs], [run[1] for run in runs]
             speed, torque = [run[2][0] for run in runs], [run[2][1] for run in runs]
             middle = statistics.median
             print(f"| {robot} | {name} | {len(all_runs) - len(runs)} | {100 * middle(above):.3f} % | {100 * max(above):.3f} % | "
-                  f"{100 * max(speed):.2f} % | {100 * middle(torque):.2f} % | {100 * max(torque):.2f} % | {1e3 * middle(seconds):.0f} |")
+                  f"{100 * max(speed):.2f} % | {100 * middle(torque):.2f} % | {100 * max(torque):.2f} % | {1e3 * middle(seconds):.2f} |")
 
 
 if __name__ == "__main__":

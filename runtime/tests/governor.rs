@@ -315,7 +315,7 @@ fn part<const N: usize>(piece: &Piece<f64, N>, s: f64, length: f64) -> Piece<f64
     let mut part = Piece { start: s, length, ..*piece };
     for power in (0..6).rev() {
         for higher in power..5 {
-            part.coefficients[higher] = part.coefficients[higher] + part.coefficients[higher + 1] * (s - piece.start);
+            part.coefficients[higher] += part.coefficients[higher + 1] * (s - piece.start);
         }
     }
     part

@@ -48,10 +48,10 @@ impl<T: RealField + Copy, const N: usize> Limits<T, N> {
 
 /// Positive or infinite, and neither so small nor, if finite, so large that squares of numbers of this size are none.
 fn usable<T: RealField + Copy, const N: usize>(setting: Setting, limits: [T; N]) -> Result<(), SettingError> {
-    let (eps, zero, infinite) = (T::default_epsilon(), T::zero(), T::one() / T::zero());
+    let (eps, infinite) = (T::default_epsilon(), T::one() / T::zero());
     let judged = limits.map(|limit| match limit {
-        _ if limit < eps * eps => zero,
-        _ if limit * eps * eps > T::one() && limit < infinite => zero / zero,
+        _ if limit < eps * eps => T::zero(),
+        _ if limit * eps * eps > T::one() && limit < infinite => -infinite,
         _ => limit,
     });
     positive_or_infinite(setting, &SVector::from(judged))

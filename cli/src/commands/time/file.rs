@@ -161,6 +161,15 @@ impl Reading<'_> {
         if let Some((key, node)) = fields.get("limits") {
             self.limits(node, key, &mut limits);
         }
+        // Squares of limits are numbers.
+        let size = f64::EPSILON.powi(2);
+        let effort = limits.effort.iter().flatten().map(|limit| limit.abs());
+        let mut all = limits.velocity.iter().chain(&limits.acceleration).copied().chain(effort).filter(|limit| limit.is_finite());
+        if all.any(|limit| limit > 0.0 && !(size..=1.0 / size).contains(&limit)) {
+            let help = "write it in rad/s, m/s, rad/s², m/s², N m or N";
+            let message = "a limit is far too small or far too large to calculate with";
+            self.reader.report(Code::NotPositive, fields.place("limits"), message, "", help);
+        }
         let (mut speed, mut hold) = ([0.0; 2], true);
         if let Some((key, node)) = fields.get("ends") {
             if let Some(of) = self.reader.mapping(node, "`ends`", key, &ENDS) {
