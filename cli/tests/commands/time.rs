@@ -7,6 +7,8 @@ use serde_json::Value;
 
 use super::{armgen, check, err, file, folder, out};
 
+#[path = "time/changed.rs"]
+mod changed;
 #[path = "time/faults.rs"]
 mod faults;
 #[path = "time/proof.rs"]

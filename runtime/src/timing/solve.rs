@@ -193,8 +193,9 @@ impl<T: RealField + Copy, const N: usize> Solver<'_, T, N> {
                 }
             }
         }
-        // Rounded upwards.
-        let [start, end] = self.ends.speed.map(|v| v * v * (T::one() + T::default_epsilon() * lit(4.0)));
+        // Rounded upwards, of the smallest speeds, too.
+        let least = |v: T| if v > T::zero() { lit(1e-30) } else { T::zero() };
+        let [start, end] = self.ends.speed.map(|v| v * v * (T::one() + T::default_epsilon() * lit(4.0)) + least(v));
         for (given, i) in [(start, 0), (end, count)] {
             let Some((segment, is_end)) = beside(segments, i) else { continue };
             let node = segments.get(i).map_or(given, |of| of.bound.node);

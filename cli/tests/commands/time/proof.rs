@@ -52,6 +52,8 @@ fn a_timing_is_proved_again() {
     verified("scara", &scara, SCARA_PATH);
     // Nodes at which no pair of rows excludes all larger speeds, but one pair after the other does.
     verified("crane", CRANE, "points: [[0, 0], [1, 1], [2, 0]]\nlimits: {acceleration: [8, 4]}\n");
+    // A motion that does not rest at its ends.
+    verified("passing", PENDULUM, "points: [[0], [1], [2]]\ncurve: through\nends: {speed: [0.7, 1.1]}\n");
     // Joints that turn round, with friction that is no line of the rate.
     let friction = "friction: {coulomb: 1, cubic: 0.5, stribeck: {torque: 4, velocity: 0.1}}, limits: {velocity: 2";
     let curved = CRANE.replace("limits: {velocity: 2", friction).replace("effort: 100", "effort: 40");
