@@ -67,8 +67,9 @@ pub fn without_virtual_joints<const V: usize, const J: usize, const N: usize>(
         let nearly = branch.double || branch.free != 0 || best.residual <= 64.0 * sqrt(UNIT_ROUNDOFF) * length;
         if best.residual > most && nearly {
             let from = best;
-            // What is left grows with the square of the distance from there; so does the error that the candidate came with.
-            let by = sqrt(8.0 * (from.residual / length).max(branch.error)).min(0.5);
+            // What is left grows with the square of the distance from there; so does the error that the candidate came with, if it is not vague.
+            let error = branch.error.min(VAGUE * VAGUE);
+            let by = sqrt(8.0 * (from.residual / length).max(error)).min(0.5);
             for number in 0..2 * J {
                 let mut step = [0.0; 6];
                 let joint = number / 2;
@@ -82,7 +83,7 @@ pub fn without_virtual_joints<const V: usize, const J: usize, const N: usize>(
             }
             // A continuum of the completed arm near the pose may have postures that no start has led to. Of two that meet the places are known to
             // the root of rounding, or of the candidate's error, and what is left between them is the square of that.
-            let close = if branch.free != 0 { 64.0 * sqrt(UNIT_ROUNDOFF) } else { branch.error.max(4096.0 * UNIT_ROUNDOFF) };
+            let close = if branch.free != 0 { 64.0 * sqrt(UNIT_ROUNDOFF) } else { error.max(4096.0 * UNIT_ROUNDOFF) };
             lost |= !met_all && (branch.double && branch.error > VAGUE || from.residual <= close * length);
         }
         if branch.double && best.residual <= most {
