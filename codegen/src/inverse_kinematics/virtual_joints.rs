@@ -7,8 +7,7 @@
 
 use super::chain::{Chain, Virtual};
 use super::classes;
-use super::jacobian::Jacobian;
-use super::{InverseKinematics, Target};
+use super::{always_moves, InverseKinematics, Target};
 use crate::exact::Number;
 
 /// (cos, sin) of an angle that no arm has: from a triple of Pythagoras.
@@ -106,8 +105,7 @@ pub(super) fn classify(chain: &Chain, length: &Number) -> Result<InverseKinemati
         way.iter().for_each(|one| completed.virtual_at_the_end(one));
         completed
     };
-    let regular =
-        |completed: &Chain| Jacobian::of(completed, None).is_none_or(|jacobian| jacobian.rank(6) == completed.joints.len());
+    let regular = |completed: &Chain| !always_moves(completed);
     let all: Vec<Chain> = ways(chain, length).iter().map(completed).filter(regular).collect();
     let closed = all.iter().find_map(|completed| classes::closed_form(completed, Target::Pose, length).ok());
     let found =

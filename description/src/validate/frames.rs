@@ -45,8 +45,7 @@ pub(super) fn lay(joints: &mut [Joint], ends: &[(usize, &Pose)], anywhere: bool,
                 let next = joints[i + 1..].iter().find(|joint| joint.parent.is_some_and(|parent| parent.index() == i));
                 let end = ends.iter().find(|(link, _)| *link == i).map_or(&bare, |(_, tool)| tool);
                 let turns = joints[i].parent.is_some_and(|parent| joints[parent.index()].kind == JointKind::Revolute);
-                let is_lost = |distance, lever| is_lost(distance, lever, joints.len());
-                frame(&joints[i], before, next, end, (reach, turns, &is_lost), parameters)
+                frame(&joints[i], before, next, end, (reach, turns, joints.len()), parameters)
             }
             false => Placement::identity(),
         };
@@ -89,13 +88,13 @@ fn is_lost(distance: f64, lever: f64, joints: usize) -> bool {
 }
 
 /// A joint frame in the frame in which the row has its axis. `before`: that of the parent, likewise; `next`: its first child; `end`: the frame at
-/// the end of the chain, if it carries none. `is_lost`: whether a distance is lost beside a longer lever arm.
+/// the end of the chain, if it carries none. `joints`: how many the arm has.
 fn frame(
     joint: &Joint,
     before: Option<&Placement>,
     next: Option<&Joint>,
     end: &Pose,
-    (reach, parent_turns, is_lost): (f64, bool, &dyn Fn(f64, f64) -> bool),
+    (reach, parent_turns, joints): (f64, bool, usize),
     parameters: &[Parameter],
 ) -> Placement {
     let u = &joint.row.axis;
@@ -157,7 +156,7 @@ fn frame(
     });
     let fits = |s: &Polynomial| {
         let size = value(s, parameters).abs();
-        let lost = is_lost(distance, size * slope) || is_lost(onward_distance, size);
+        let lost = is_lost(distance, size * slope, joints) || is_lost(onward_distance, size, joints);
         size <= reach && !lost && s.terms().all(|(_, c)| c.terms().count() <= MAX_TERMS)
     };
     let along = [along, of_before].into_iter().find(fits).unwrap_or_default();
