@@ -217,6 +217,25 @@ in_both_scalars! {
         assert!(doubtful <= if SINGLE { 30 } else { 1 }, "{doubtful} of 300");
     }
 
+    /// A pose that is off from a rotation has other solutions in each arrangement. Beside the posture of 0, 0, 0, 0.7 rad, 0 both look for some.
+    #[test]
+    fn a_general_arm_lists_each_posture_once() {
+        let arm = Arm::standard(&JACO, &[]);
+        let ways = general_ways(&arm, 8);
+        let random = &mut Random(5);
+        let mut twice = 0;
+        for _ in 0..100 {
+            let q = [arm.posture(random)[0], 0.0, 0.0, 0.0, random.between(-1.5, 1.5), 0.0];
+            let size = if SINGLE { 6e-8 } else { 10f64.powf(random.between(-9.0, -7.0)) };
+            let t = arm.at(&q).map(|row| row.map(|x| x + (size * random.between(-1.0, 1.0)) as Real));
+            let found = general_arm(&ways, &t, arm.length());
+            let single: Vec<_> = found.found().iter().filter(|branch| !branch.double).collect();
+            let same = if SINGLE { 2e-2 } else { 1e-6 };
+            twice += (0..single.len()).filter(|&i| single[..i].iter().any(|other| apart(&other.joints, &single[i].joints) < same)).count();
+        }
+        assert_eq!(twice, 0);
+    }
+
     /// Where joints 2, 3 and 5 of a Jaco are at 0 or pi several regular postures nearly share a root of the
     /// determinant, in both arrangements: rounding hides them.
     #[test]

@@ -378,6 +378,22 @@ pub fn displaced([x, y, z]: Vector) -> Frame {
     [[1.0, 0.0, 0.0, x], [0.0, 1.0, 0.0, y], [0.0, 0.0, 1.0, z]]
 }
 
+/// The same displacement with the rotation (3 - R R')/2 R: a rotation to e² where R is one to e.
+fn orthonormal(link: &Frame) -> Frame {
+    let mut result = *link;
+    for i in 0..3 {
+        for j in 0..3 {
+            let [x, y, z, _] = link[j];
+            let wanted = if i == j { 1.0 } else { 0.0 };
+            let off = 0.5 * (wanted - dot([link[i][0], link[i][1], link[i][2]], [x, y, z]));
+            result[i][0] += off * x;
+            result[i][1] += off * y;
+            result[i][2] += off * z;
+        }
+    }
+    result
+}
+
 /// The turn of a frame: sine times axis for less than a right angle, beyond that angle times axis; about x for a half turn.
 fn turn_vector_of(f: &Frame) -> Vector {
     let v = [0.5 * (f[2][1] - f[1][2]), 0.5 * (f[0][2] - f[2][0]), 0.5 * (f[1][0] - f[0][1])];

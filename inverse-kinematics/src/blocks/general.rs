@@ -3,10 +3,12 @@
 /// All solutions of a general arm, in the arm's order: [`determinant_on_circle`] in the first arrangement; where that is not certain to be complete
 /// also in the second, and both results are joined.
 ///
+/// - The pose is made orthonormal first: where it is off by e, the two arrangements have solutions that are e over the smallest singular value apart.
 /// - `near`: neither arrangement is complete, or they contradict each other: solutions may be missing.
 /// - `continuum`: the determinant vanishes in both.
 pub fn general_arm(arrangements: &[Arrangement<6>; 2], t: &Frame, length: Real) -> Branches<6, 16> {
     let [first, second] = arrangements;
+    let t = &orthonormal(t);
     let mut found = Branches::new();
     let one = determinant_on_circle(&first.links_at(t), first.prismatic, length);
     for branch in one.found.found() {
@@ -62,17 +64,18 @@ fn add_from_beside(found: &mut Branches<6, 16>, way: &Arrangement<6>, t: &Frame,
     }
 }
 
-/// Adds a solution of an arrangement's loop, in the arm's order, unless it is known.
+/// Adds a solution of an arrangement's loop, in the arm's order, unless it is known. Two that are apart by a few roots of rounding meet there: both
+/// are double.
 fn join(found: &mut Branches<6, 16>, way: &Arrangement<6>, branch: &Branch<6>, length: Real) {
     let same = SAME * sqrt(UNIT_ROUNDOFF);
-    let branch = way.of_arm(branch);
+    let mut branch = way.of_arm(branch);
     let mut prismatic = [false; 6];
     for (joint, slides) in way.order.iter().zip(way.prismatic) {
         if let Some(kind) = prismatic.get_mut(*joint) {
             *kind = slides;
         }
     }
-    let count = found.count;
+    let (count, mut meets) = (found.count, false);
     for known in found.all.iter_mut().take(count) {
         // Of a double solution the place is known to the square root of the rounding only.
         let off = apart(&known.joints, &branch.joints, &prismatic, length);
@@ -80,6 +83,10 @@ fn join(found: &mut Branches<6, 16>, way: &Arrangement<6>, branch: &Branch<6>, l
             known.double |= branch.double;
             return;
         }
+        if off <= 8.0 * same {
+            (known.double, meets) = (true, true);
+        }
     }
+    branch.double |= meets;
     found.add(branch);
 }

@@ -209,22 +209,6 @@ impl<'a> TwoSlides<'a> {
     }
 }
 
-/// The same displacement with the rotation (3 - R R')/2 R: a rotation to e² where R is one to e.
-fn orthonormal(link: &Frame) -> Frame {
-    let mut result = *link;
-    for i in 0..3 {
-        for j in 0..3 {
-            let [x, y, z, _] = link[j];
-            let wanted = if i == j { 1.0 } else { 0.0 };
-            let off = 0.5 * (wanted - dot([link[i][0], link[i][1], link[i][2]], [x, y, z]));
-            result[i][0] += off * x;
-            result[i][1] += off * y;
-            result[i][2] += off * z;
-        }
-    }
-    result
-}
-
 /// Block 9, two prismatic joints: J1 L1 ... J6 L6 = 1 with joint 1 revolute and `slides` the numbers (from 0) of the prismatic joints, neighbours or not.
 ///
 /// With t1, t2, t3 the other revolute joints, what stands between them is Rx(alpha) and Rx(beta) as a rotation, sin alpha and sin beta not 0.
