@@ -11,7 +11,7 @@
 //! Dynamics Algorithms, Sect. 6.5).
 
 use super::arm::Arm;
-use crate::ring::{ExprId, Pool};
+use crate::ring::{ExprId, Node, Pool, Symbol};
 
 /// L and D^-1, of the rows and columns in the order of their elimination.
 pub struct LdlFactors {
@@ -31,8 +31,19 @@ impl LdlFactors {
 
     /// Factors the inertia matrix of an arm, in its coordinates.
     pub fn of_inertia(pool: &mut Pool, arm: &Arm, b: &[Vec<ExprId>]) -> LdlFactors {
-        let joints = 0..arm.coordinates();
-        LdlFactors::in_order(pool, b, if arm.is_chain() { joints.collect() } else { joints.rev().collect() })
+        LdlFactors::from_end(pool, b, arm.is_chain())
+    }
+
+    /// The same in functions that gravity enters. From the leaves a chain is cheaper, too; from the base it keeps the text of earlier versions,
+    /// which had no gravity as an argument.
+    pub fn of_inertia_under_gravity(pool: &mut Pool, arm: &Arm, b: &[Vec<ExprId>]) -> LdlFactors {
+        let is_argument = arm.gravity.iter().any(|&g| matches!(pool.node(g), Node::Symbol(Symbol::Gravity(_))));
+        LdlFactors::from_end(pool, b, arm.is_chain() && !is_argument)
+    }
+
+    fn from_end(pool: &mut Pool, b: &[Vec<ExprId>], is_base: bool) -> LdlFactors {
+        let joints = 0..b.len();
+        LdlFactors::in_order(pool, b, if is_base { joints.collect() } else { joints.rev().collect() })
     }
 
     fn in_order(pool: &mut Pool, m: &[Vec<ExprId>], order: Vec<usize>) -> LdlFactors {

@@ -181,7 +181,7 @@ pub fn forward_dynamics_derivatives(pool: &mut Pool, arm: &Arm, plan: &mut Plan)
             pool.sub(tau, bias[i])
         })
         .collect();
-    let factors = LdlFactors::of_inertia(pool, arm, &b);
+    let factors = LdlFactors::of_inertia_under_gravity(pool, arm, &b);
     let accelerations = factors.solve(pool, &right);
     let motion = Motion { accelerations: arm.spread(pool, accelerations), ..Motion::plain(pool, arm) };
     let inverse = factors.inverse(pool);

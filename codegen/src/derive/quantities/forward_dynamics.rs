@@ -55,5 +55,5 @@ pub fn forward_dynamics(pool: &mut Pool, arm: &Arm, plan: &mut Plan) -> Vec<Expr
         pool.sub(tau, bias)
     };
     let right: Vec<ExprId> = (0..).zip(bias).map(|entry| torque(pool, entry)).collect();
-    LdlFactors::of_inertia(pool, arm, &b).solve(pool, &right)
+    LdlFactors::of_inertia_under_gravity(pool, arm, &b).solve(pool, &right)
 }
