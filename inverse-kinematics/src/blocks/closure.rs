@@ -212,10 +212,11 @@ impl<const N: usize> Loop<'_, N> {
         1.0 + furthest / self.length
     }
 
-    /// Whether the loop is closed there: to some roundings of its reach, and where solutions meet (`contact`) to the root of rounding.
+    /// Whether the loop is closed there: to some roundings of its reach, and where solutions meet (`contact`) to the root of rounding. Not where
+    /// slides go so far that their rounding alone is more.
     fn is_closed(&self, closed: &Closed<N>, contact: bool) -> bool {
         let reach = if self.slides_far() { self.extended(&closed.joints) } else { 1.0 };
-        (contact || closed.residual <= CLOSED * self.length) && closed.residual * reach <= CLOSED_AT_MOST * self.length
+        (contact || closed.residual <= CLOSED * self.length) && (closed.residual + UNIT_ROUNDOFF * self.length) * reach <= CLOSED_AT_MOST * self.length
     }
 
     /// The least residual that damped steps (Levenberg, Marquardt) reach from `joints` in 30 of them: how far a pose out of reach is. `damping`, of

@@ -330,7 +330,7 @@ fn slides_at(unit: &[Frame; 6], slides: [usize; 2], prismatic: &[bool; 6]) -> (B
             let w = sqrt(at.square.max(0.0));
             for w in [w, -w] {
                 let closed = closing.nearest(&arm.joints(given, &at, w), UNIT_ROUNDOFF);
-                if closed.residual <= 2.0 * ROUNDING {
+                if closed.residual <= 2.0 * ROUNDING && closing.is_closed(&closed, true) {
                     double |= closed.double;
                     merge(&mut found, &closing, &closed, closed.double);
                 }
