@@ -117,6 +117,24 @@ mod arm {
         }
     }
 
+    /// A pose with few digits is a rotation to these: `miss` tells it, and a limit is met to what such a pose moves nearly singular postures by.
+    #[test]
+    fn limits_are_met_to_the_digits_of_the_pose() {
+        let beyond = concluded(&with(&[branch(3.0 - 1e-6, 0.5, 0)]), false);
+        assert_eq!(beyond.of_rotation(&IDENTITY), beyond);
+        assert_eq!(beyond.within_limits().count, 0);
+        let mut off = IDENTITY;
+        off[0][0] += 1e-9;
+        let found = beyond.of_rotation(&off);
+        assert!((found.miss - 2e-9).abs() < 1e-15, "{}", found.miss);
+        let within = found.within_limits();
+        assert_eq!((within.count, within.all[0].q[0], within.miss), (1, 3.0, found.miss));
+        let far = concluded(&with(&[branch(3.0 - 1e-5, 0.5, 0)]), false).of_rotation(&off);
+        assert_eq!(far.within_limits().count, 0);
+        let none = Solutions { miss: 0.25, ..Solutions::none(Verdict::Unreachable) };
+        assert_eq!(none.of_rotation(&off).miss, 0.25);
+    }
+
     #[test]
     fn nearest_modulo_turns() {
         let found = concluded(&with(&[branch(3.0, 0.0, 0), branch(-1.0, 0.0, 1)]), false);

@@ -184,7 +184,8 @@ pub enum Verdict {
 pub struct Postures<T> {
     /// Whether these are all.
     pub verdict: Verdict,
-    /// Without a posture: the distance by which the construction missed, m; a hint, not a bound. Otherwise 0.
+    /// Without a posture: the distance by which the construction missed, m; a hint, not a bound. Otherwise how far the rotation of the pose is from
+    /// orthonormal, 0 within rounding.
     pub miss: T,
     /// Joint variables of one posture after the other: angles in (-pi, pi], rad; lengths, m.
     pub q: Vec<T>,
@@ -254,7 +255,7 @@ pub trait Solved: Scalar {
     #[doc(hidden)]
     fn variables(table: &Self::Table, q: &[Self]) -> Vec<Self>;
     #[doc(hidden)]
-    fn within(table: &Self::Table, q: &mut [Self], limits: impl Fn(usize) -> [Self; 2]) -> bool;
+    fn within(table: &Self::Table, q: &mut [Self], miss: Self, limits: impl Fn(usize) -> [Self; 2]) -> bool;
     #[doc(hidden)]
     fn nearest_of(table: &Self::Table, all: &[Self], q: &[Self]) -> Option<usize>;
 }
@@ -315,7 +316,7 @@ impl<T: Solved> Solver<T> {
         let rest = found.branch.iter().zip(&found.double).zip(&found.free);
         for (q, ((branch, double), free)) in found.q.chunks(self.of.prismatic.len()).zip(rest) {
             let mut q = q.to_vec();
-            if T::within(&self.table, &mut q, &limits) {
+            if T::within(&self.table, &mut q, found.miss, &limits) {
                 within.q.append(&mut q);
                 within.branch.push(*branch);
                 within.double.push(*double);

@@ -258,7 +258,7 @@ impl Postures {
         self.reason.as_deref()
     }
 
-    /// Of a pose without a posture a hint at how much is missing, m; else 0.
+    /// Of a pose without a posture a hint at how much is missing, m; else how far its rotation is from orthonormal, 0 within rounding.
     #[getter]
     fn miss(&self) -> f64 {
         self.found.miss

@@ -37,7 +37,8 @@ pub struct Postures<const JOINTS: usize, const MOST: usize> {
     pub verdict: Verdict,
     /// How many there are.
     pub count: usize,
-    /// Where there is none: by how much the construction missed. A hint for people, not a bound; otherwise 0.
+    /// Where there is none: by how much the construction missed. A hint for people, not a bound. Else by how much the postures miss the pose
+    /// at least: how far its rotation is from one, 0 within rounding.
     pub miss: Real,
     /// The postures; zeros from `count` on.
     pub all: [Posture<JOINTS>; MOST],
@@ -55,14 +56,24 @@ impl<const JOINTS: usize, const MOST: usize> Postures<JOINTS, MOST> {
         self.all.get(..self.count).unwrap_or(&self.all)
     }
 
+    /// The same postures, of a pose with this rotation.
+    pub fn of_rotation(&self, t: &Frame) -> Self {
+        let off = off_rotation(t);
+        let mut result = *self;
+        if self.count > 0 && off > ROUNDING {
+            result.miss = off;
+        }
+        result
+    }
+
     /// The postures within the limits of the joints, by their lower and upper ends, infinite where there is none: angles are moved by whole turns into
     /// them, by no turn if that does, else by as few as possible. `prismatic`: the joints that slide; `length`: the arm's, m.
-    /// Rounding of the pose can move a joint variable by the root of the unit roundoff (rad; of a slide times `length`): so far beyond a limit it
-    /// counts as within, and is put at the limit. The verdict stays as it was.
+    /// Rounding of the pose can move a joint variable by the root of the unit roundoff (rad; of a slide times `length`), and a pose that is no
+    /// rotation by `SENSITIVITY` times `miss` more: so far beyond a limit it counts as within, and is put at the limit. The verdict stays as it was.
     pub fn within(&self, limits: [[Real; 2]; JOINTS], prismatic: [bool; JOINTS], length: Real) -> Self {
         let mut within = Postures { miss: self.miss, ..Postures::none(self.verdict) };
         // Where two solutions meet the error of a joint is the root of the pose's, elsewhere it is smaller.
-        let error = sqrt(UNIT_ROUNDOFF);
+        let error = sqrt(UNIT_ROUNDOFF) + SENSITIVITY * self.miss;
         for solution in self.as_slice() {
             let mut moved = *solution;
             let mut inside = true;
@@ -140,19 +151,24 @@ pub fn all_finite(t: &[[Real; 4]; 4]) -> bool {
 
 /// Whether all entries of a pose are finite and its rotation is one, to 1e-6.
 pub fn is_pose(t: &[[Real; 4]; 4]) -> bool {
-    let [x, y, z, _] = t;
-    let rows = [[x[0], x[1], x[2]], [y[0], y[1], y[2]], [z[0], z[1], z[2]]];
-    let near = |value: Real, wanted: Real| (value - wanted).abs() <= NO_ROTATION;
-    let [u, v, w] = rows;
-    // Two unit vectors at a right angle, and the third is what they make it.
-    let square = near(dot(u, u), 1.0) && near(dot(v, v), 1.0) && near(dot(u, v), 0.0);
+    let [x, y, z, _] = *t;
+    all_finite(t) && off_rotation(&[x, y, z]) <= NO_ROTATION
+}
+
+/// How far the rotation of a pose is from one: two unit vectors at a right angle, and the third is what they make it.
+fn off_rotation([x, y, z]: &Frame) -> Real {
+    let (u, v) = ([x[0], x[1], x[2]], [y[0], y[1], y[2]]);
+    let square = (dot(u, u) - 1.0).abs().max((dot(v, v) - 1.0).abs()).max(dot(u, v).abs());
     let third = cross(u, v);
-    let right = near(third[0], w[0]) && near(third[1], w[1]) && near(third[2], w[2]);
-    all_finite(t) && square && right
+    square.max((third[0] - z[0]).abs()).max((third[1] - z[1]).abs()).max((third[2] - z[2]).abs())
 }
 
 /// How far from orthonormal a rotation may be.
 const NO_ROTATION: Real = if UNIT_ROUNDOFF < 1e-10 { 1e-6 } else { ROUNDING };
+
+/// By how much a pose moves joint variables, over its own error: the inverse of the smallest singular value of a regular posture, 1e-3 of the
+/// arm's length, times four entries that are off.
+const SENSITIVITY: Real = 4096.0;
 
 /// The solutions that a construction has found, as joint variables with their verdict. Joints beyond those of the arm are virtual: they are dropped.
 /// `prismatic`: the arm's joints that slide. `by_angle`: in the order of the joint variables, for a construction without branches; else in that of

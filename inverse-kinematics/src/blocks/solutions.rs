@@ -10,8 +10,8 @@ pub type Solutions = Postures<DOF, MAX_SOLUTIONS>;
 
 impl Solutions {
     /// The postures within `POSITION_LIMITS`, angles moved by whole turns into them: by none if that does, else by as few as possible.
-    /// Rounding of the pose can move a joint variable by the root of the unit roundoff (rad; of a slide times `LENGTH`): so far beyond a limit it
-    /// counts as within, and is put at the limit. The verdict stays what it was.
+    /// Rounding of the pose can move a joint variable by the root of the unit roundoff (rad; of a slide times `LENGTH`), and a pose that is no
+    /// rotation by 4096 times `miss` more: so far beyond a limit it counts as within, and is put at the limit. The verdict stays what it was.
     pub fn within_limits(&self) -> Solutions {
         self.within(POSITION_LIMITS, PRISMATIC, LENGTH)
     }

@@ -217,11 +217,11 @@ impl Table {
         std::array::from_fn(|joint| self.prismatic.get(joint).copied().unwrap_or(true))
     }
 
-    /// Whether a posture is within the limits, into which it is moved.
-    fn within(&self, q: &mut [Real], limits: impl Fn(usize) -> [Real; 2]) -> bool {
+    /// Whether a posture, which misses its pose by `miss`, is within the limits, into which it is moved.
+    fn within(&self, q: &mut [Real], miss: Real, limits: impl Fn(usize) -> [Real; 2]) -> bool {
         let own = self.prismatic.len();
         let limits = |joint| if joint < own { limits(joint) } else { [Real::NEG_INFINITY, Real::INFINITY] };
-        let alone = block::Postures { count: 1, all: [posture(q)], ..block::Postures::<MOST_JOINTS, 1>::none(block::Verdict::Complete) };
+        let alone = block::Postures { count: 1, miss, all: [posture(q)], ..block::Postures::<MOST_JOINTS, 1>::none(block::Verdict::Complete) };
         let within = alone.within(std::array::from_fn(limits), self.slides(), self.length);
         let moved = within.as_slice().first();
         if let Some(moved) = moved {
@@ -267,7 +267,12 @@ impl Table {
                 None => at.tip = Some(block::column(&given.link(at.value), 3)),
             }
         }
-        self.at(&at, redundancy)
+        let found = self.at(&at, redundancy);
+        if !self.orientation || found.is_empty() {
+            return found;
+        }
+        let one = block::Postures::<1, 1> { count: 1, ..block::Postures::none(block::Verdict::Complete) };
+        Postures { miss: one.of_rotation(&[x, y, z]).miss, ..found }
     }
 
     fn at(&self, at: &At, redundancy: Real) -> Postures<Real> {
@@ -446,8 +451,8 @@ impl Solved for Real {
         all
     }
 
-    fn within(table: &Table, q: &mut [Real], limits: impl Fn(usize) -> [Real; 2]) -> bool {
-        table.within(q, limits)
+    fn within(table: &Table, q: &mut [Real], miss: Real, limits: impl Fn(usize) -> [Real; 2]) -> bool {
+        table.within(q, miss, limits)
     }
 
     fn nearest_of(table: &Table, all: &[Real], q: &[Real]) -> Option<usize> {

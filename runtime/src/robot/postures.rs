@@ -38,7 +38,8 @@ pub struct Posture<T, const N: usize> {
 pub struct Postures<T, const N: usize, const K: usize> {
     /// How complete they are.
     pub verdict: Verdict,
-    /// Without a posture, by how much the construction missed: a hint for people, not a bound. Otherwise 0.
+    /// Without a posture, by how much the construction missed: a hint for people, not a bound. Otherwise how far the rotation of the pose
+    /// is from orthonormal, 0 within rounding.
     pub miss: T,
     /// How many there are.
     pub count: usize,

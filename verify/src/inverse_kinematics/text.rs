@@ -319,18 +319,21 @@ struct Shape {
     tip: bool,
     own: bool,
     coupled: bool,
+    /// The target has a rotation.
+    rotation: bool,
 }
 
 impl Shape {
     /// The end of the function.
     fn concluded(self, solutions: &str, by_angle: bool) -> String {
+        let rotation = if self.rotation { ".of_rotation(&[x,y,z])" } else { "" };
         if self.coupled {
             format!(
-                "letjoints:Solutions=conclude({solutions},JOINT_SLIDES,{by_angle});\
+                "letjoints:Solutions=conclude({solutions},JOINT_SLIDES,{by_angle}){rotation};\
                  in_coordinates(&joints,COORDINATES,COORDINATE_OFFSET,PRISMATIC)}}"
             )
         } else {
-            format!("conclude({solutions},PRISMATIC,{by_angle})}}")
+            format!("conclude({solutions},PRISMATIC,{by_angle}){rotation}}}")
         }
     }
 }
@@ -555,7 +558,7 @@ impl Text {
             }
         }
         let (given, coupled) = (joint.is_some(), coordinates.is_some());
-        let shape = Shape { dof, given, tip, own: own.is_some(), coupled };
+        let shape = Shape { dof, given, tip, own: own.is_some(), coupled, rotation };
         let (construction, moved) = body(&mut reader, &loops, shape)?;
         let first = loops.first_mut().ok_or("there is no loop")?;
         if moved.is_some_and(|place| place >= first.order.len() || place == first.open) {

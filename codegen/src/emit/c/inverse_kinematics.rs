@@ -102,7 +102,7 @@ pub(super) fn types(names: &Names, found: &InverseKinematics, way: &str) -> Stri
          uint32_t is_double; /* 1: two solutions meet here */\n    \
          uint32_t free; /* bit i: {entry} i + 1 has one of many values, which the construction chose */\n}} {robot}_solution;\n\n\
          /* All postures that reach a {target}. */\ntypedef struct {{\n    uint32_t verdict;\n    uint32_t count;\n    \
-         {real} miss; /* where there is none: by how much the construction missed, a hint; otherwise 0 */\n    \
+         {real} miss; /* where there is none: by how much the construction missed, a hint; otherwise how far t is from a rotation */\n    \
          {robot}_solution all[{upper}_MAX_SOLUTIONS]; /* zeros from count on */\n}} {robot}_solutions;\n\n"
     )
 }

@@ -640,10 +640,11 @@ fn conclusion(found: &InverseKinematics, dof: usize) -> TokenStream {
 
 /// The expression for the postures of solutions of the arm's joints, in its coordinates.
 fn concluded(found: &InverseKinematics, solutions: &TokenStream, by_angle: bool) -> TokenStream {
+    let rotation = (found.target != Target::Position).then(|| quote!(.of_rotation(&[x, y, z])));
     match found.coordinates {
-        None => quote!(conclude(#solutions, PRISMATIC, #by_angle)),
+        None => quote!(conclude(#solutions, PRISMATIC, #by_angle)#rotation),
         Some(_) => quote! {
-            let joints: Solutions = conclude(#solutions, JOINT_SLIDES, #by_angle);
+            let joints: Solutions = conclude(#solutions, JOINT_SLIDES, #by_angle)#rotation;
             in_coordinates(&joints, COORDINATES, COORDINATE_OFFSET, PRISMATIC)
         },
     }
