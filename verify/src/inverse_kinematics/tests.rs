@@ -409,7 +409,8 @@ fn other_texts_are_refused() {
     assert!(fault("x * along - y * w, y * along + x * w", "x * along + y * w, y * along + x * w").contains(why));
     assert!(fault("found.count = 2;", "found.count = 1;").contains(why));
     assert!(fault("found.free = true;", "").contains(why));
-    assert!(fault("conclude(&found, PRISMATIC, false)\n}", "conclude(&found, PRISMATIC, true)\n}").contains("should stand where"));
+    assert!(fault("conclude(&found, PRISMATIC, false)", "conclude(&found, PRISMATIC, true)").contains("should stand where"));
+    assert!(fault(".of_rotation(&[x, y, z])\n}", "\n}").contains("should stand where"));
     assert!(fault("    if !is_pose(t) {", "    if false {").contains("should stand where"));
     assert!(fault("    backward: false", "    backward: true").contains("not the loop of this arm"));
     assert!(fault("\nmod all_solutions {", "\nmod others {").contains("should stand where"));

@@ -114,7 +114,7 @@ macro_rules! every_block {
                 few::<3>(&links);
                 few::<4>(&links);
                 few::<5>(&links);
-                keep((is_pose(&black_box([[number(); 4]; 4])), Solutions::none(Verdict::Invalid)));
+                keep((is_pose(&black_box([[number(); 4]; 4])), Solutions::none(Verdict::Invalid).of_rotation(&frame())));
             }
         }
     };
