@@ -43,7 +43,7 @@ mod solver {
         };
         let (first, second) = (way(links), way(other));
         let regional = [regional_elbow, regional_crossing, regional_general];
-        match which % 8 {
+        let found = match which % 8 {
             0 => conclude(&general_arm(&[first, second], &t, length), PRISMATIC, true),
             1 => conclude(&three_parallel(&first.links_at(&t)), PRISMATIC, false),
             2 => conclude(&three_prismatic(&first.links_at(&t), [0, 2, 4]), PRISMATIC, false),
@@ -70,7 +70,8 @@ mod solver {
                 polish(&mut found, &Loop { links: &links, prismatic: [false; 6], target: [0.0; 3], length });
                 conclude(&found, PRISMATIC, false)
             }
-        }
+        };
+        found.of_rotation(&t)
     }
 }
 
