@@ -195,6 +195,44 @@ in_both_scalars! {
         assert!(worst <= if SINGLE { 3e-3 } else { 1e-9 }, "{worst:e}");
     }
 
+    /// At multiples of right angles slides are in one plane, turns meet and axes are parallel: the pose is in reach, and each posture has it.
+    #[test]
+    fn three_slides_reach_what_they_reach() {
+        let random = &mut Random(8);
+        let (mut unreachable, mut worst) = (0, 0.0 as Real);
+        for turning in [[1, 2, 3], [3, 4, 5], [1, 2, 4], [1, 3, 4], [0, 2, 4], [2, 3, 5]] {
+            let slides: Vec<usize> = (0..6).filter(|i| !turning.contains(i)).collect();
+            for _ in 0..4 {
+                let rows: [(f64, f64, f64, f64); 6] = std::array::from_fn(|i| {
+                    let slope = if slides.contains(&i) { [0.0, RIGHT / 3.0][random.below(2)] } else { RIGHT };
+                    let length = [0.0, random.between(-0.5, 0.5)];
+                    (0.0, if slides.contains(&i) { 0.0 } else { length[random.below(2)] }, length[random.below(2)], slope)
+                });
+                let arm = Arm::standard(&rows, &slides);
+                let (_, links) = arranged::<6>(&arm, &arm.at(&arm.posture(random)), 0, false);
+                // Slides in one plane at all poses.
+                if three_prismatic(&links, turning).found().iter().any(|branch| branch.free != 0) {
+                    continue;
+                }
+                for _ in 0..100 {
+                    let q = special(&arm, 0.8, random);
+                    let t = arm.at(&q);
+                    let (_, links) = arranged::<6>(&arm, &t, 0, false);
+                    let mut found = three_prismatic(&links, turning);
+                    let prismatic = std::array::from_fn(|i| slides.contains(&i));
+                    close_where_solutions_meet(&mut found, &Loop { links: &links, prismatic, target: [0.0; 3], length: arm.length() });
+                    unreachable += usize::from(found.count == 0 && !found.near && !found.continuum);
+                    for branch in found.found() {
+                        worst = worst.max(defect(&arm.forward(&branch.joints), &t));
+                    }
+                }
+            }
+        }
+        assert_eq!(unreachable, 0);
+        // Where solutions meet the nearest may miss by the root of rounding.
+        assert!(worst <= if SINGLE { 3e-3 } else { 1e-7 }, "{worst:e}");
+    }
+
     /// Entries of a pose that are off by 1e-9 make no rotation. Joint 5 at pi brings the axes of joints 4 and 6 together, where two postures share a
     /// root that such a pose would hide.
     #[test]

@@ -212,11 +212,16 @@ impl<const N: usize> Loop<'_, N> {
         1.0 + furthest / self.length
     }
 
+    /// By how much the end effector misses its place: the residual and its own rounding, as far as slides take them.
+    fn miss(&self, closed: &Closed<N>) -> Real {
+        let reach = if self.slides_far() { self.extended(&closed.joints) } else { 1.0 };
+        (closed.residual + UNIT_ROUNDOFF * self.length) * reach
+    }
+
     /// Whether the loop is closed there: to some roundings of its reach, and where solutions meet (`contact`) to the root of rounding. Not where
     /// slides go so far that their rounding alone is more.
     fn is_closed(&self, closed: &Closed<N>, contact: bool) -> bool {
-        let reach = if self.slides_far() { self.extended(&closed.joints) } else { 1.0 };
-        (contact || closed.residual <= CLOSED * self.length) && (closed.residual + UNIT_ROUNDOFF * self.length) * reach <= CLOSED_AT_MOST * self.length
+        (contact || closed.residual <= CLOSED * self.length) && self.miss(closed) <= CLOSED_AT_MOST * self.length
     }
 
     /// The least residual that damped steps (Levenberg, Marquardt) reach from `joints` in 30 of them: how far a pose out of reach is. `damping`, of
@@ -311,12 +316,13 @@ fn close_those_that_meet<const J: usize, const N: usize>(found: &mut Branches<J,
         let mut branch = *branch;
         if branch.double || branch.free != 0 {
             let (_, residual) = closing.equations(&branch.joints);
-            if !(residual <= NEXT_TO_ROUNDING * closing.length) {
+            let here = Closed { joints: branch.joints, residual, double: true };
+            if !(residual <= NEXT_TO_ROUNDING * closing.length && closing.is_closed(&here, false)) {
                 let best = closing.close_beside(&branch.joints, residual, branch.free);
-                if !(best.residual <= CLOSED * closing.length) {
+                if !closing.is_closed(&best, false) {
                     kept.near = true;
-                    if best.residual < least {
-                        least = best.residual;
+                    if closing.miss(&best) < least {
+                        least = closing.miss(&best);
                         nearest = branch;
                         nearest.joints = best.joints;
                     }

@@ -341,21 +341,24 @@ fn slides_at(unit: &[Frame; 6], slides: [usize; 2], prismatic: &[bool; 6]) -> (B
     let settled = !roots.near && distinct == roots.count && met;
     found.near = !roots.free && (!settled || arm.axes_meet());
     if found.count == 0 && !found.continuum {
-        let (mut place, mut least) = (0, Real::INFINITY);
+        // A root that rounding has lifted off 0 is at a least size.
         for (j, sample) in samples.iter().enumerate() {
-            if sample.abs() < least {
-                (place, least) = (j, sample.abs());
+            let beside = |by: usize| samples.get((j + by) % 12).map_or(0.0, |sample| sample.abs());
+            if sample.abs() > beside(1) || sample.abs() > beside(11) {
+                continue;
+            }
+            let given = [cosine_of_15_degrees(2 * j), cosine_of_15_degrees(2 * j + 18)];
+            let at = arm.at(given);
+            let w = sqrt(at.square.max(0.0));
+            for w in [w, -w] {
+                let nearest = closing.nearest(&arm.joints(given, &at, w), 1e-2);
+                found.missed(nearest.residual);
+                if closing.is_closed(&nearest, true) {
+                    merge(&mut found, &closing, &nearest, true);
+                }
+                found.near |= nearest.residual <= CLOSED_AT_MOST;
             }
         }
-        let given = [cosine_of_15_degrees(2 * place), cosine_of_15_degrees(2 * place + 18)];
-        let at = arm.at(given);
-        let joints = arm.joints(given, &at, sqrt(at.square.max(0.0)));
-        let nearest = closing.nearest(&joints, 1e-2);
-        found.missed(nearest.residual);
-        if closing.is_closed(&nearest, true) {
-            merge(&mut found, &closing, &nearest, true);
-        }
-        found.near |= nearest.residual <= CLOSED_AT_MOST;
     }
     (found, settled)
 }

@@ -312,7 +312,10 @@ impl Table {
                 self.in_order::<2, 3, 4, 4>(at, way, found, false)
             }
             Calls::ThreePrismatic(way, turning) => {
-                self.in_order::<5, 6, 7, 8>(at, way, block::three_prismatic(&way.links_at(&at.t), *turning), false)
+                let links = at.with_moved(way.links_at(&at.t));
+                let mut found = block::three_prismatic(&links, *turning);
+                self.bring_to_the_pose(&mut found, &links, way, false);
+                self.in_order::<5, 6, 7, 8>(at, way, found, false)
             }
             Calls::TwoSlides(way, slides) => {
                 self.in_order::<5, 6, 7, 8>(at, way, block::two_slides(&way.links_at(&at.t), *slides, length), true)

@@ -181,7 +181,10 @@ fn of_rest(text: &Text, t: &block::Frame, moved: Option<(usize, block::Frame)>, 
         }
         Construction::ThreePrismatic { turning } => {
             let way = arrangement::<6>(first)?;
-            in_order(text, t, &way, block::three_prismatic(&way.links_at(t), [turning[0], turning[1], turning[2]]))
+            let links = links_at(&way);
+            let mut found = block::three_prismatic(&links, [turning[0], turning[1], turning[2]]);
+            finish(&mut found, &block::Loop { links: &links, prismatic: way.prismatic, target: [0.0; 3], length }, false);
+            in_order(text, t, &way, found)
         }
         Construction::TwoSlides { slides } => {
             let way = arrangement::<6>(first)?;

@@ -376,6 +376,13 @@ fn body(reader: &mut Reader<'_>, loops: &[Arrangement], shape: Shape) -> Result<
         let case = name(reader, ')')?;
         reader.expect(";")?;
         Construction::ParallelTurns { kinds, case }
+    } else if links && reader.take("letmutfound=three_prismatic(&links,") {
+        let turning = counts(&reader.value()?)?;
+        reader.expect(");")?;
+        if !own {
+            reader.expect(CLOSE)?;
+        }
+        Construction::ThreePrismatic { turning }
     } else if links {
         reader.expect("letmutfound=three_parallel(&links);")?;
         Construction::ThreeParallel { polished: polished(reader, own)? }
@@ -387,10 +394,6 @@ fn body(reader: &mut Reader<'_>, loops: &[Arrangement], shape: Shape) -> Result<
         let case = name(reader, ')')?;
         reader.expect(";")?;
         Construction::ParallelTurns { kinds, case }
-    } else if reader.take("letmutfound=three_prismatic(&LOOP.links_at(&t),") {
-        let turning = counts(&reader.value()?)?;
-        reader.expect(");")?;
-        Construction::ThreePrismatic { turning }
     } else if reader.take("letmutfound=two_slides(&LOOP.links_at(&t),") {
         let slides = counts(&reader.value()?)?;
         reader.expect(",LENGTH);")?;

@@ -185,7 +185,10 @@ fn needed(scalar: Scalar, found: &InverseKinematics) -> Vec<&'static Text> {
             names.push(case.text);
             names.extend((!case.closed).then_some("closure"));
         }
-        Construction::ThreePrismatic(..) => names.push("three_prismatic"),
+        Construction::ThreePrismatic(..) => {
+            names.push("three_prismatic");
+            names.extend(found.own.is_none().then_some("closure"));
+        }
         Construction::TwoSlides(..) => names.push("two_slides"),
         Construction::ShoulderElbowWrist(_) => names.push("shoulder_elbow_wrist"),
         Construction::General(_) => names.push("general"),
@@ -545,9 +548,11 @@ fn solutions(found: &InverseKinematics, dof: usize) -> TokenStream {
             }
         }
         Construction::ThreePrismatic(_, turning) => {
-            let turning = turning.map(Literal::usize_unsuffixed);
+            let (turning, polish) = (turning.map(Literal::usize_unsuffixed), polish(false));
             quote! {
-                let mut found = three_prismatic(&LOOP.links_at(&t), [#(#turning),*]);
+                #links
+                let mut found = three_prismatic(&links, [#(#turning),*]);
+                #polish
                 #in_order
             }
         }
