@@ -53,11 +53,13 @@ pub(super) fn node_bound<T: RealField + Copy, const N: usize>(
     let sides = [(left, 2), (right, 0)];
     let mut x = huge::<T>();
     for (segment, end) in sides {
-        let squares = segment.into_iter().flat_map(|segment| &segment.rates[2]);
-        for (square, limit) in squares.zip(&limits.velocity) {
+        let Some(segment) = segment else { continue };
+        let tool = segment.tool.iter().zip(limits.tool.iter().flat_map(|tool| tool.both()));
+        let joints = segment.rates[2].iter().zip(limits.velocity);
+        for (square, limit) in joints.chain(tool) {
             let c = square.quadratic[end] - square.error;
             if c > T::zero() {
-                let bound = *limit * *limit;
+                let bound = segment.most(limit);
                 x = x.min((bound + bound * lit(ROUNDING)) / c);
             }
         }
