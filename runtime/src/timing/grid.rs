@@ -8,7 +8,7 @@ use super::path::{number, Piece};
 use super::polynomial::{self, ORDER};
 use super::segment::{Interpolation, Node, Segment, Source, OVER};
 use crate::linalg::{lit, to_f64};
-use nalgebra::{RealField, SVector};
+use nalgebra::RealField;
 
 /// Base segments for each radian that the joints move, all together.
 const DENSITIES: [f64; 2] = [8.0, 4.0];
@@ -93,10 +93,9 @@ pub(super) fn build<T: RealField + Copy, R: PathDynamics<N, Real = T>, const N: 
                 let s = number(piece.start + distance * lit(i as f64));
                 return Err(TimingError { s, piece: index, fault: TimingFault::NotFinite });
             }
-            let square = |of: SVector<T, 3>| of.norm_squared();
             let tool = tool.map_or([T::zero(); 2], |_| {
                 let rate = robot.tool_rate(&point.q, &point.slope);
-                [square(rate.fixed_rows::<3>(0).into()), square(rate.fixed_rows::<3>(3).into())]
+                [rate.x * rate.x + rate.y * rate.y + rate.z * rate.z, rate.w * rate.w + rate.a * rate.a + rate.b * rate.b]
             });
             *node = Node::new(torques, tool);
         }

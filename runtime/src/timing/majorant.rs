@@ -170,11 +170,9 @@ pub(super) fn bounds<T: RealField + Copy, const N: usize>(
     let mut bounds = [empty; 2];
     if let Some((tool, link)) = tool.and_then(|tool| Some((tool, all.get(tool.joint).or(all.last())?))) {
         let velocity = plus(&link.velocity, &derivative(&scaled(&link.beta, tool.distance)));
-        for (part, of) in [velocity, link.w].into_iter().enumerate() {
-            let square = times(&of, &of);
-            for (bounds, order) in bounds.iter_mut().zip([0, NINE]) {
-                bounds.tool[part] = square[order];
-            }
+        let [speed, turn_rate] = [velocity, link.w].map(|of| times(&of, &of));
+        for (bounds, order) in bounds.iter_mut().zip([0, NINE]) {
+            bounds.tool = [speed[order], turn_rate[order]];
         }
     }
     for i in (0..N).rev() {

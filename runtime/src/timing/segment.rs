@@ -543,15 +543,15 @@ impl<T: RealField + Copy, const N: usize> Source<'_, T, N> {
         if !self.with_tool {
             return;
         }
-        for (part, column) in segment.tool.iter_mut().enumerate() {
+        for part in 0..2 {
             let dot = |weights: &[T; NINE]| {
                 weights.iter().zip(window).fold(T::zero(), |sum, (weight, node)| sum + *weight * node.tool[part])
             };
-            let [left, middle, right] =
-                [0, 1, 2].map(|place: usize| nodes[place].map_or_else(|| dot(&weights[place]), |node| node.tool[part]));
+            let at = |place: usize| nodes[place].map_or_else(|| dot(&weights[place]), |node| node.tool[part]);
+            let [left, middle, right] = [at(0), at(1), at(2)];
             let steepest = third.iter().fold(T::zero(), |steepest, row| most(steepest, dot(row).abs()));
-            let [size, ninth] = self.bounds.each_ref().map(|bounds| bounds.tool[part]);
-            *column =
+            let [size, ninth] = [self.bounds[0].tool[part], self.bounds[1].tool[part]];
+            segment.tool[part] =
                 Column { quadratic: through(left, middle, right), error: steepest * cube + ninth * remainder + size * rounding };
         }
     }
