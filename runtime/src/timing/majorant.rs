@@ -171,9 +171,8 @@ pub(super) fn bounds<T: RealField + Copy, const N: usize>(
     if let Some((tool, link)) = tool.and_then(|tool| Some((tool, all.get(tool.joint).or(all.last())?))) {
         let velocity = plus(&link.velocity, &derivative(&scaled(&link.beta, tool.distance)));
         let [speed, turn_rate] = [velocity, link.w].map(|of| times(&of, &of));
-        for (bounds, order) in bounds.iter_mut().zip([0, NINE]) {
-            bounds.tool = [speed[order], turn_rate[order]];
-        }
+        let [size, ninth] = &mut bounds;
+        (size.tool, ninth.tool) = ([speed[0], turn_rate[0]], [speed[NINE], turn_rate[NINE]]);
     }
     for i in (0..N).rev() {
         let link = all[i];
