@@ -231,6 +231,7 @@ impl Nodes {
 
 #[cfg(test)]
 mod tests {
+    use super::super::file::Kind;
     use super::*;
 
     /// From a place on, a sum is above 0 up to its reach, and not above 0 right behind that.
