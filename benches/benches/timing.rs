@@ -18,7 +18,7 @@ use armgen_runtime::timing::{
     Piece, Segment, Timing, Workspace,
 };
 use chain::{Chain, PANDA_LIMITS, SCARA_LIMITS, UR5_LIMITS};
-use nalgebra::SVector;
+use nalgebra::{SVector, Vector6};
 
 /// Random numbers in [0, 1).
 fn random(seed: u64) -> impl FnMut() -> f64 {
@@ -48,7 +48,7 @@ fn curve<const N: usize>(points: &[SVector<f64, N>]) -> Vec<Piece<f64, N>> {
             coefficients[2] = (way * 3.0 - a * 2.0 - b) / length.powi(2);
             coefficients[3] = (a + b - way * 2.0) / length.powi(3);
             start += length;
-            Piece { start: start - length, length, coefficients }
+            Piece::new(start - length, length, coefficients)
         })
         .collect()
 }
@@ -69,6 +69,10 @@ impl<const N: usize> PathDynamics<N> for Known<'_, N> {
             known.push(self.chain.path_dynamics(q, slope, curvature));
         }
         known[*next - 1]
+    }
+
+    fn tool_rate(&self, q: &SVector<f64, N>, slope: &SVector<f64, N>) -> Vector6<f64> {
+        self.chain.tool_rate(q, slope)
     }
 
     fn joint_friction(&self) -> &[JointFriction<f64>; N] {

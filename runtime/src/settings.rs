@@ -77,6 +77,8 @@ pub enum Setting {
     Horizon,
     /// The share of an acceleration limit that braking counts with; at most 1.
     BrakingShare,
+    /// The distance of the end effector from a joint.
+    ToolDistance,
 }
 
 impl core::fmt::Display for Setting {
@@ -116,6 +118,7 @@ impl core::fmt::Display for Setting {
             Setting::Weight => "the weights",
             Setting::Horizon => "the horizon",
             Setting::BrakingShare => "the share of braking (or of 1 less it)",
+            Setting::ToolDistance => "the distance of the end effector",
         })
     }
 }

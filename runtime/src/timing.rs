@@ -35,7 +35,7 @@ mod trial;
 
 pub use fault::{TimingError, TimingFault};
 pub use governor::{Command, Governed, Governor, Phase};
-pub use limits::Limits;
+pub use limits::{Limits, ToolLimit};
 pub use model::{JointFriction, LinkBound, PathDynamics, PathModel, PathTorques};
 pub use path::{JointPath, PathError, PathFault, PathPoint, Piece};
 pub use segment::{Limit, Node, Segment};

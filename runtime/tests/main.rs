@@ -13,6 +13,7 @@ mod limited;
 mod manipulability;
 mod model;
 mod operational_space;
+mod passing;
 mod payload;
 // The page shows a part of it as a file of its own.
 #[allow(unreachable_pub)]

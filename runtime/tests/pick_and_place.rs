@@ -39,7 +39,7 @@ fn path(d: f64) -> Vec<Piece<f64, 4>> {
                 scale *= (5.0 - k as f64) / (k as f64 + 1.0) / (2.0 * d);
                 c
             });
-            pieces.push(Piece { start: s, length: 2.0 * d, coefficients });
+            pieces.push(Piece::new(s, 2.0 * d, coefficients));
             s += 2.0 * d;
             from = p + b * d;
         }

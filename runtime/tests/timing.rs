@@ -47,7 +47,7 @@ fn spline<const N: usize>(points: &[SVector<f64, N>]) -> Vec<Piece<f64, N>> {
             coefficients[1] = (points[i + 1] - points[i]) / h[i] - (second[i] * 2.0 + second[i + 1]) * (h[i] / 6.0);
             coefficients[2] = second[i] / 2.0;
             coefficients[3] = (second[i + 1] - second[i]) / (6.0 * h[i]);
-            let piece = Piece { start, length: h[i], coefficients };
+            let piece = Piece::new(start, h[i], coefficients);
             start += h[i];
             piece
         })
@@ -779,7 +779,7 @@ fn strange<const N: usize>(chain: &Chain<N>, count: u64) -> usize {
             if let Some(last) = pieces.last().map(|last: &Piece<f64, N>| last.at(last.end())).filter(|_| any(0.0) > 0.0) {
                 (coefficients[0], coefficients[1]) = (last.q, last.slope);
             }
-            pieces.push(Piece { start, length, coefficients });
+            pieces.push(Piece::new(start, length, coefficients));
             start += length;
         }
         let (velocity, effort) = ([(); N].map(|()| any(share).abs() * 3.0), [(); N].map(|()| any(share).abs() * 100.0));

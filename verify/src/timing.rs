@@ -28,7 +28,7 @@ use armgen_description::manipulator::Manipulator;
 
 use crate::values::element::Element;
 use bernstein::at_most_zero;
-use file::{Barrier, File, Kind, KINDS};
+use file::{Barrier, File};
 use rows::{Checker, Functions};
 use taylor::{Range, Taylor};
 
@@ -63,14 +63,14 @@ impl Checker {
             return Err(segment("ds² may be negative".to_owned(), 0.0));
         }
         let (x, u) = (law.taylor(), law.acceleration(of.h).ok_or_else(|| segment("the segment has no length".to_owned(), 0.0))?);
+        for (joint, kind, name) in self.file.rows() {
+            let Some(row) = self.row(of, joint, kind) else { continue };
+            let smooth = row.m.times(&u).plus(&row.c.times(&x)).plus(&row.d);
+            let curved = row.curve.map(|curve| (curve, of.rate[joint].times(&of.rate[joint]).times(&x)));
+            at_most_zero(&smooth, Some((&row.v, &x)), curved.as_ref(), &law.square())
+                .map_err(|t| segment(format!("the motion may exceed the limit `{name}`"), t))?;
+        }
         for (joint, name) in self.file.joints.iter().enumerate() {
-            for (kind, text) in KINDS {
-                let Some(row) = self.row(of, joint, kind) else { continue };
-                let smooth = row.m.times(&u).plus(&row.c.times(&x)).plus(&row.d);
-                let curved = row.curve.map(|curve| (curve, of.rate[joint].times(&of.rate[joint]).times(&x)));
-                at_most_zero(&smooth, Some((&row.v, &x)), curved.as_ref(), &law.square())
-                    .map_err(|t| segment(format!("the motion may exceed the limit `{name} {text}`"), t))?;
-            }
             if let Some([low, high]) = self.ranges[joint] {
                 let q = &of.q[joint];
                 let [above, below] = [q.minus(&Taylor::constant(Range::of(high))), Taylor::constant(Range::of(low)).minus(q)];
@@ -88,11 +88,9 @@ impl Checker {
     /// The row of the barrier of segment `i` lets no motion through.
     fn barrier(&self, i: usize, of: &Functions, barrier: &Barrier) -> Result<(), String> {
         let (joint, kind) = barrier.row;
-        let name = format!(
-            "barrier by `{} {}`",
-            self.file.joints[joint],
-            KINDS.iter().find(|(of, _)| *of == kind).map_or("", |of| of.1)
-        );
+        let mut rows = self.file.rows();
+        let name =
+            rows.find(|row| (row.0, row.1) == barrier.row).map_or_else(String::new, |row| format!("barrier by `{}`", row.2));
         let fault = |what: &str, t: f64| format!("not proved: at s = {} the {name} {what}", self.place(i, t));
         let law = &barrier.law;
         if !law.is_square() {
@@ -100,7 +98,7 @@ impl Checker {
         }
         let row = self.row(of, joint, kind).ok_or_else(|| fault("has no limit", 0.0))?;
         let m = match (barrier.direction, kind) {
-            (0, Kind::Speed) => None,
+            (0, kind) if kind.is_speed() => None,
             (1, _) => Some(row.m.negated()),
             (-1, _) => Some(row.m.clone()),
             _ => return Err(fault("has no direction", 0.0)),
@@ -132,6 +130,11 @@ pub fn check(manipulator: &Manipulator, text: &str) -> Result<Proved, String> {
             return Err(format!("not proved: the motion has another speed than {speed} at an end"));
         }
     }
+    for i in (0..file.s.len()).filter(|i| file.rests(*i)) {
+        if file.laws.get(i).is_none_or(|law| law.x[0] != 0.0) {
+            return Err(format!("not proved: the motion does not rest at s = {}, where the path stops", file.s[i]));
+        }
+    }
     let found = crate::values::check::parallel_map(&(0..file.laws.len()).collect::<Vec<_>>(), |i| {
         let functions = checker.functions(*i)?;
         checker.motion(*i, &functions)?;
@@ -158,7 +161,7 @@ pub fn check(manipulator: &Manipulator, text: &str) -> Result<Proved, String> {
     Ok(Proved { segments: functions.len(), duration: file.duration, lower_bound: bound.low.min(file.lower_bound) })
 }
 
-/// q and q' are continuous at the knots.
+/// q and q' are continuous at the knots; q alone where the motion rests.
 fn path_is_smooth(file: &File) -> Result<(), String> {
     for (piece, pair) in file.coefficients.windows(2).enumerate() {
         let t = file.knots[piece + 1] - file.knots[piece];
@@ -166,7 +169,8 @@ fn path_is_smooth(file: &File) -> Result<(), String> {
             let value = before.iter().rev().fold(0.0, |sum, c| sum * t + c);
             let rate = before.iter().enumerate().skip(1).rev().fold(0.0, |sum, (k, c)| sum * t + k as f64 * c);
             let off = |a: f64, b: f64| (a - b).abs() > 1e-9 * (1.0 + a.abs());
-            if off(value, after[0]) || off(rate, after.get(1).copied().unwrap_or(0.0)) {
+            let rests = file.stops.contains(&file.knots[piece + 1]);
+            if off(value, after[0]) || !rests && off(rate, after.get(1).copied().unwrap_or(0.0)) {
                 let name = &file.joints[joint];
                 return Err(format!("not proved: joint `{name}` jumps at s = {}", file.knots[piece + 1]));
             }

@@ -118,9 +118,9 @@ fn refused(source: &Source, diagnostics: &Diagnostics) -> u8 {
     FAULTY
 }
 
-/// The arm of a description, or the exit code after the message why it cannot be timed.
-fn arm<const N: usize>(description: &str, manipulator: &Manipulator) -> Result<Arm<N>, u8> {
-    with_spinner("deriving", || Arm::new(manipulator)).ok_or_else(|| {
+/// The arm of a description, `is_led`: with the speed of its end effector; or the exit code after the message why it cannot be timed.
+fn arm<const N: usize>(description: &str, manipulator: &Manipulator, is_led: bool) -> Result<Arm<N>, u8> {
+    with_spinner("deriving", || Arm::new(manipulator, is_led)).ok_or_else(|| {
         let reason = "massless: nothing of this arm has mass, so it has no equations of motion";
         terminal::error(&format!("{description}: {reason}"));
         FAULTY
@@ -141,7 +141,8 @@ struct Job<'a> {
 impl Job<'_> {
     /// The motion; `None` where the path has none, after a diagnostic. An exit code where the arm has none, after a message.
     fn run<const N: usize>(&self, diagnostics: &mut Diagnostics) -> Result<Option<Motion>, u8> {
-        let arm: Arm<N> = arm(self.description, self.manipulator)?;
+        let is_led = self.file.limits.tool.iter().any(|limit| limit.is_finite());
+        let arm: Arm<N> = arm(self.description, self.manipulator, is_led)?;
         let form = self.file.form.as_ref().expect("a file that is timed has a path");
         let (pieces, away) = match &self.file.tip {
             None => (curve::pieces(form), None),
@@ -150,7 +151,7 @@ impl Job<'_> {
                 None => return Ok(None),
             },
         };
-        let (pieces, origins): (Vec<Piece<f64, N>>, Vec<curve::Origin>) = pieces.into_iter().unzip();
+        let (pieces, origins): (Vec<Piece<f64, N>>, Vec<curve::Origin>) = curve::with_speeds(pieces, form).into_iter().unzip();
         let faults = Faults { manipulator: self.manipulator, file: self.file, form, origins: &origins };
         faults.of_corners(diagnostics);
         faults.of_positions(&pieces, diagnostics);
@@ -165,7 +166,7 @@ impl Job<'_> {
                 return Ok(None);
             }
         };
-        let limits = self.limits::<N>();
+        let limits = self.limits(&arm);
         let segments = self.asked.segments as usize;
         let (mut nodes, mut storage) =
             (vec![Node::empty(); 2 * segments + path.pieces().len()], vec![Segment::empty(); segments + 1]);
@@ -239,7 +240,7 @@ impl Job<'_> {
         self.manipulator.joints.get(joint).is_some_and(|joint| joint.kind == JointKind::Prismatic)
     }
 
-    fn limits<const N: usize>(&self) -> timing::Limits<f64, N> {
+    fn limits<const N: usize>(&self, arm: &Arm<N>) -> timing::Limits<f64, N> {
         let of = |all: &[f64]| std::array::from_fn(|joint| all.get(joint).copied().unwrap_or(f64::INFINITY));
         let limits = &self.file.limits;
         let effort =
@@ -247,6 +248,15 @@ impl Job<'_> {
         timing::Limits::velocity(of(&limits.velocity))
             .and_then(|all| all.with_acceleration(of(&limits.acceleration)))
             .and_then(|all| all.with_effort(effort(0, -f64::INFINITY), effort(1, f64::INFINITY)))
+            .and_then(|all| {
+                let [speed, turn_rate] = limits.tool;
+                let (joint, distance) = arm.tip();
+                if arm.is_led() {
+                    all.with_tool(timing::ToolLimit { speed, turn_rate, joint, distance })
+                } else {
+                    Ok(all)
+                }
+            })
             .expect("the file and the description have positive limits")
     }
 }

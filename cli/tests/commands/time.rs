@@ -11,6 +11,8 @@ use super::{armgen, check, err, file, folder, out};
 mod changed;
 #[path = "time/faults.rs"]
 mod faults;
+#[path = "time/passing.rs"]
+mod passing;
 #[path = "time/proof.rs"]
 mod proof;
 #[path = "time/trajectory.rs"]
@@ -344,8 +346,7 @@ fn limits_by_name_replace_those_of_the_description() {
     let path =
         "points: [[0, 0], [1, 0.1]]\nlimits: {velocity: {lift: 0.5}, acceleration: {boom: 3}, effort: {lift: [-50, 25]}}\n";
     let (text, _, json) = timed("limits", CRANE, path, &[], 0);
-    let expected =
-        serde_json::json!({"velocity": [0.5, 2.0], "acceleration": [null, 3.0], "effort": [[-50.0, 25.0], [null, null]]});
+    let expected = serde_json::json!({"velocity": [0.5, 2.0], "acceleration": [null, 3.0], "effort": [[-50.0, 25.0], [null, null]], "tool": [null, null]});
     assert_eq!(json["limits"], expected);
     assert!(text.contains("lift speed"), "{text}");
 }

@@ -45,7 +45,7 @@ pub enum TimingFault {
         /// Whether it is proved that no motion exists.
         proved: bool,
     },
-    /// At rest at the end the torque is beyond its limit: the arm gets there and falls.
+    /// At rest at the end, or where the path stops, the torque is beyond its limit: the arm gets there and falls.
     EndNotHeld {
         /// The joint.
         joint: usize,
@@ -72,7 +72,7 @@ messages! { TimingFault,
     TimingFault::InfeasiblePoint { joint, limit } => "at no speed does joint {} keep its limit ({})", joint + 1, limit.name();
     TimingFault::InfeasibleSpeed { joint, limit, speed, needed, proved: true } => "the path cannot be got through from here, which is proved: joint {} ({}), speed {}, needed {}", joint + 1, limit.name(), speed, needed;
     TimingFault::InfeasibleSpeed { joint, limit, speed, needed, .. } => "the path cannot be got through from here, which is not proved: joint {} ({}), speed {}, needed {}", joint + 1, limit.name(), speed, needed;
-    TimingFault::EndNotHeld { joint, torque, limit } => "at rest at the end joint {} needs {} and has {}: the arm gets there and falls", joint + 1, torque, limit;
+    TimingFault::EndNotHeld { joint, torque, limit } => "at rest joint {} needs {} and has {}: the arm gets there and falls", joint + 1, torque, limit;
     TimingFault::TooCoarse { segments } => "no motion was found, and none was proved to be impossible: {} segments are worth a try", segments;
 }
 
@@ -85,6 +85,8 @@ impl Limit {
             Limit::AccelerationHigh => "acceleration high",
             Limit::AccelerationLow => "acceleration low",
             Limit::Velocity => "speed",
+            Limit::ToolSpeed => "end effector speed",
+            Limit::ToolTurnRate => "end effector turn rate",
         }
     }
 }

@@ -94,7 +94,7 @@ impl<'a, T: RealField + Copy, const N: usize> Governor<'a, T, N> {
         let end = segments.last()?.inner.law.x2;
         let mut next = [end, end];
         for (segment, of) in segments.iter().zip(reachable.iter_mut()).rev() {
-            *of = backwards(timing, segment, next);
+            *of = if segment.stop { [T::zero(); 2] } else { backwards(timing, segment, next) };
             next = *of;
         }
         let rest = Law { length: first.length, x0: T::zero(), k: T::zero(), x2: T::zero() };

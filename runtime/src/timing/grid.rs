@@ -1,6 +1,7 @@
 //! Grids: base segments of a path, roots of joint rates, halves.
 
 use super::fault::{TimingError, TimingFault};
+use super::limits::ToolLimit;
 use super::majorant::{self, Bounds, NINE};
 use super::model::PathDynamics;
 use super::path::{number, Piece};
@@ -54,6 +55,7 @@ pub(super) fn build<T: RealField + Copy, R: PathDynamics<N, Real = T>, const N: 
     nodes: &mut [Node<T, N>],
     segments: &mut [Segment<T, N>],
     interpolation: &Interpolation<T>,
+    tool: Option<&ToolLimit<T>>,
 ) -> Result<(Layout<T>, usize), TimingError> {
     let links = robot.link_bounds();
     let reach = links.iter().fold(T::zero(), |sum, link| {
@@ -91,10 +93,14 @@ pub(super) fn build<T: RealField + Copy, R: PathDynamics<N, Real = T>, const N: 
                 let s = number(piece.start + distance * lit(i as f64));
                 return Err(TimingError { s, piece: index, fault: TimingFault::NotFinite });
             }
-            *node = Node::new(torques);
+            let tool = tool.map_or([T::zero(); 2], |_| {
+                let rate = robot.tool_rate(&point.q, &point.slope);
+                [rate.x * rate.x + rate.y * rate.y + rate.z * rate.z, rate.w * rate.w + rate.a * rate.a + rate.b * rate.b]
+            });
+            *node = Node::new(torques, tool);
         }
-        let bounds = majorant::bounds(links, robot.gravity_length(), piece);
-        let source = Source { piece, nodes, distance, bounds: &bounds, interpolation };
+        let bounds = majorant::bounds(links, robot.gravity_length(), tool, piece);
+        let source = Source { piece, nodes, distance, bounds: &bounds, with_tool: tool.is_some(), interpolation };
         let roots = roots(robot, piece, distance);
         let boundary = |i: usize| {
             let place: T = lit((2 * i) as f64);
@@ -120,6 +126,7 @@ pub(super) fn build<T: RealField + Copy, R: PathDynamics<N, Real = T>, const N: 
                 segment.node = first + 2 * i;
                 segment.window = first + window;
                 segment.ends = [left - base, cut - base];
+                segment.stop = piece.stop && i == 0 && left == boundary(0);
                 place(segment, piece, distance, base);
                 source.fill(segment);
                 count += 1;
@@ -170,6 +177,7 @@ pub(super) fn halve<T: RealField + Copy, R: PathDynamics<N, Real = T>, const N: 
     segments: &mut [Segment<T, N>],
     count: usize,
     interpolation: &Interpolation<T>,
+    tool: Option<&ToolLimit<T>>,
 ) -> usize {
     let marked = segments.iter().take(count).filter(|segment| segment.split).count();
     let mut to = count + marked;
@@ -189,7 +197,7 @@ pub(super) fn halve<T: RealField + Copy, R: PathDynamics<N, Real = T>, const N: 
             let Some(of) = pieces.get(index) else { break };
             let n = layout.segments(robot, of);
             first -= (2 * n + 1).min(first);
-            let bounds = majorant::bounds(robot.link_bounds(), robot.gravity_length(), of);
+            let bounds = majorant::bounds(robot.link_bounds(), robot.gravity_length(), tool, of);
             current = Some((index, bounds, of.length / lit((2 * n) as f64)));
         }
         let mut put = |segment: Segment<T, N>| {
@@ -202,13 +210,14 @@ pub(super) fn halve<T: RealField + Copy, R: PathDynamics<N, Real = T>, const N: 
             put(Segment { split: false, ..segment });
             continue;
         };
-        let source = Source { piece, nodes, distance: *distance, bounds, interpolation };
+        let source = Source { piece, nodes, distance: *distance, bounds, with_tool: tool.is_some(), interpolation };
         let base: T = lit(segment.node.saturating_sub(first) as f64);
         let [left, right] = segment.ends;
         let middle = (left + right) * half;
         let (zero, one) = (T::zero(), T::one());
         for (ends, part) in [([middle, right], [half, one]), ([left, middle], [zero, half])] {
-            let mut of = Segment { ends, split: false, is_new: true, changed: true, ..segment };
+            let stop = segment.stop && part[0] == zero;
+            let mut of = Segment { ends, stop, split: false, is_new: true, changed: true, ..segment };
             place(&mut of, piece, *distance, base);
             of.inner.law = segment.inner.law.part(part[0], part[1]);
             source.fill(&mut of);

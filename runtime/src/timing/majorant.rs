@@ -9,9 +9,11 @@
 //! r_i = (distance_i + |q_i|) beta_p                            |q_i| for a slide alone
 //! V_i = V_p + r_i',   P = m V_i + (h_i beta_i)',   L = J_i beta_i beta_i w_i + h_i beta_i V_i
 //! inertial:  force P,  moment L;      velocity:  force P',  moment L' + V_i P;      gravity:  force m g0,  moment h_i beta_i g0
+//! end effector:  |V_i + (distance beta_i)'|², |w_i|²
 //! back:  f_p += f_i,  N_p += N_i + r_i f_i;     torque_i = beta_p N_i, of a slide beta_p f_i, and the rotor's
 //! ```
 
+use super::limits::ToolLimit;
 use super::model::LinkBound;
 use super::path::Piece;
 use super::polynomial::{self, ORDER};
@@ -31,6 +33,8 @@ pub(super) struct Bounds<T, const N: usize> {
     pub inertial: [T; N],
     pub velocity: [T; N],
     pub gravity: [T; N],
+    /// Squares of the end effector's speed and turn rate.
+    pub tool: [T; 2],
 }
 
 fn plus<T: RealField + Copy>(a: &Sequence<T>, b: &Sequence<T>) -> Sequence<T> {
@@ -95,6 +99,7 @@ struct Link<T> {
 pub(super) fn bounds<T: RealField + Copy, const N: usize>(
     links: &[LinkBound<T>; N],
     gravity: T,
+    tool: Option<&ToolLimit<T>>,
     piece: &Piece<T, N>,
 ) -> [Bounds<T, N>; 2] {
     let zero = [T::zero(); ORDERS];
@@ -161,8 +166,14 @@ pub(super) fn bounds<T: RealField + Copy, const N: usize>(
             parent.moment[1] = plus(&parent.moment[1], &derivative(&momentum));
         }
     }
-    let empty = Bounds { inertial: [T::zero(); N], velocity: [T::zero(); N], gravity: [T::zero(); N] };
+    let empty = Bounds { inertial: [T::zero(); N], velocity: [T::zero(); N], gravity: [T::zero(); N], tool: [T::zero(); 2] };
     let mut bounds = [empty; 2];
+    if let Some((tool, link)) = tool.and_then(|tool| Some((tool, all.get(tool.joint).or(all.last())?))) {
+        let velocity = plus(&link.velocity, &derivative(&scaled(&link.beta, tool.distance)));
+        let [speed, turn_rate] = [velocity, link.w].map(|of| times(&of, &of));
+        let [size, ninth] = &mut bounds;
+        (size.tool, ninth.tool) = ([speed[0], turn_rate[0]], [speed[NINE], turn_rate[NINE]]);
+    }
     for i in (0..N).rev() {
         let link = all[i];
         let parent_beta = links[i].parent.and_then(|p| all.get(p)).map_or(still, |p| p.beta);
@@ -187,4 +198,33 @@ pub(super) fn bounds<T: RealField + Copy, const N: usize>(
         }
     }
     bounds
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Two links in a plane, rates a and b: |p'|² = (l_1 a)² + (l_2 (a + b))² + 2 l_1 l_2 a (a + b) cos(q_2).
+    #[test]
+    fn the_speed_of_the_end_effector_is_bounded() {
+        let link = |parent: Option<usize>, distance: f64| LinkBound {
+            parent,
+            slides: false,
+            distance,
+            mass: 0.0,
+            first_moment: 0.0,
+            inertia: 0.0,
+            coupling: 0.0,
+            reflected: 0.0,
+        };
+        let ([l1, l2], [a, b]) = ([0.7, 0.4], [1.5, 2.5]);
+        let tool = ToolLimit { speed: 1.0, turn_rate: 1.0, joint: 1, distance: l2 };
+        let links = [link(None, 0.3), link(Some(0), l1)];
+        let [size, ninth] = bounds(&links, 0.0, Some(&tool), &Piece::line(0.0, 1.0, [0.2, -1.0], [0.2 + a, b - 1.0]));
+        let factorial: f64 = (1..=9).map(f64::from).product();
+        let (most, of_cosine) = ((l1 * a + l2 * (a + b)).powi(2), 2.0 * l1 * l2 * a * (a + b) * b.powi(9) / factorial);
+        let near = |bound: f64, value: f64| bound >= value * (1.0 - 1e-12) && bound <= value * (1.0 + 1e-12);
+        assert!(near(size.tool[0], most) && near(size.tool[1], (a + b).powi(2)), "{size:?} {most}");
+        assert!(ninth.tool[0] >= of_cosine && ninth.tool[1] >= 0.0, "{ninth:?} {of_cosine}");
+    }
 }

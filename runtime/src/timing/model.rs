@@ -1,7 +1,7 @@
 //! What a timing needs of an arm: its torques along a path, its friction, and lengths and masses that bound derivatives.
 
 use crate::robot::Dynamics;
-use nalgebra::{RealField, SVector};
+use nalgebra::{RealField, SVector, Vector6};
 
 /// The torques along a path, before friction: tau = inertial u + velocity x + gravity with u = dds and x = ds².
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -83,6 +83,9 @@ pub trait PathDynamics<const N: usize> {
         curvature: &SVector<Self::Real, N>,
     ) -> PathTorques<Self::Real, N>;
 
+    /// J(q) q': velocity and angular velocity of the end effector for ds = 1, in any frame; m and rad. Asked for where it is limited.
+    fn tool_rate(&self, q: &SVector<Self::Real, N>, slope: &SVector<Self::Real, N>) -> Vector6<Self::Real>;
+
     /// Friction of the joints.
     fn joint_friction(&self) -> &[JointFriction<Self::Real>; N];
 
@@ -125,6 +128,10 @@ impl<R: Dynamics<N>, const N: usize> PathDynamics<N> for PathModel<'_, R, R::Rea
             velocity: self.robot.inverse_dynamics(q, slope, curvature) - friction - gravity,
             gravity,
         }
+    }
+
+    fn tool_rate(&self, q: &SVector<R::Real, N>, slope: &SVector<R::Real, N>) -> Vector6<R::Real> {
+        self.robot.geometric_jacobian(q) * slope
     }
 
     fn joint_friction(&self) -> &[JointFriction<R::Real>; N] {

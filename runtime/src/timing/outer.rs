@@ -50,18 +50,7 @@ pub(super) fn node_bound<T: RealField + Copy, const N: usize>(
     friction: &[JointFriction<T>; N],
     side: &mut Side<T, N>,
 ) -> NodeBound<T> {
-    let sides = [(left, 2), (right, 0)];
-    let mut x = huge::<T>();
-    for (segment, end) in sides {
-        let squares = segment.into_iter().flat_map(|segment| &segment.rates[2]);
-        for (square, limit) in squares.zip(&limits.velocity) {
-            let c = square.quadratic[end] - square.error;
-            if c > T::zero() {
-                let bound = *limit * *limit;
-                x = x.min((bound + bound * lit(ROUNDING)) / c);
-            }
-        }
-    }
+    let x = within_speeds::<_, N, 0>(right, limits, within_speeds::<_, N, 2>(left, limits, huge()));
     // u may jump at a node, as q'' and the signs of friction do: each side has an interval of its own.
     // Within a piece, and with the same signs, both have the same functions within their errors: one of them is enough.
     let is_smooth = left.zip(right).is_some_and(|(left, right)| left.piece == right.piece && left.signs == right.signs);
@@ -77,6 +66,24 @@ pub(super) fn node_bound<T: RealField + Copy, const N: usize>(
         }
         _ => bound,
     }
+}
+
+/// What the limits of speed leave of an x at an end of a segment.
+fn within_speeds<T: RealField + Copy, const N: usize, const END: usize>(
+    segment: Option<&Segment<T, N>>,
+    limits: &Limits<T, N>,
+    mut x: T,
+) -> T {
+    let Some(segment) = segment else { return x };
+    let tool = segment.tool.iter().zip(limits.tool.iter().flat_map(|tool| tool.both()));
+    for (square, limit) in segment.rates[2].iter().zip(limits.velocity).chain(tool) {
+        let c = square.quadratic[END] - square.error;
+        if c > T::zero() {
+            let bound = segment.most(limit);
+            x = x.min((bound + bound * lit(ROUNDING)) / c);
+        }
+    }
+    x
 }
 
 /// The rows with a slope at an end of a segment.

@@ -14,16 +14,25 @@ pub struct Piece<T, const N: usize> {
     pub length: T,
     /// Powers of s - start, lowest first; rad or m.
     pub coefficients: [SVector<T, N>; 6],
+    /// At most this share of each limit of speed holds on it; above 0, and 1 for all of it.
+    pub speed: T,
+    /// Whether the motion rests where it begins: the direction may change there.
+    pub stop: bool,
 }
 
 impl<T: RealField + Copy, const N: usize> Piece<T, N> {
+    /// A polynomial in s - start, at the full speed and without a stop.
+    pub fn new(start: T, length: T, coefficients: [SVector<T, N>; 6]) -> Self {
+        Self { start, length, coefficients, speed: T::one(), stop: false }
+    }
+
     /// A line from `from` to `to`.
     pub fn line(start: T, length: T, from: [T; N], to: [T; N]) -> Self {
         let (from, to) = (SVector::from(from), SVector::from(to));
         let mut coefficients = [SVector::zeros(); ORDER];
         coefficients[0] = from;
         coefficients[1] = (to - from) / length;
-        Self { start, length, coefficients }
+        Self::new(start, length, coefficients)
     }
 
     /// Where it ends.
@@ -34,6 +43,7 @@ impl<T: RealField + Copy, const N: usize> Piece<T, N> {
     /// The same piece run backwards, beginning at `start`.
     ///
     /// A path is run backwards by its pieces in the other order; the time of its way back is that of another motion, since friction turns.
+    /// A stop is not kept: on the way back it is where the piece ends.
     #[must_use]
     pub fn reversed(&self, start: T) -> Self {
         let mut coefficients = [SVector::zeros(); ORDER];
@@ -44,7 +54,7 @@ impl<T: RealField + Copy, const N: usize> Piece<T, N> {
                 sign = -sign;
             }
         }
-        Self { start, length: self.length, coefficients }
+        Self { start, coefficients, stop: false, ..*self }
     }
 
     /// q, q' and q'' at `s`; s itself may be a little outside.
@@ -96,7 +106,7 @@ pub struct PathPoint<T, const N: usize> {
     pub curvature: SVector<T, N>,
 }
 
-/// A path of pieces, one after the other: continuous, with a continuous direction, never at rest.
+/// A path of pieces, one after the other: continuous, with a continuous direction but where it stops, never at rest elsewhere.
 ///
 /// Storage is the caller's: `S` is an array, a slice or a `Vec` of pieces.
 #[derive(Clone, Copy, Debug)]
@@ -123,6 +133,8 @@ pub enum PathFault {
     Empty,
     /// A number is infinite, NaN, or so large or small that its square is none.
     NotFinite,
+    /// The share of the limits of speed is not above 0, or above 1.
+    Speed,
     /// A piece has no length, or no joint moves on it; within rounding, too.
     ZeroLength,
     /// A piece does not begin where the one before it ends, in s.
@@ -152,12 +164,13 @@ messages! { PathError,
 messages! { PathFault,
     PathFault::Empty => "the path has no piece";
     PathFault::NotFinite => "a number is infinite, NaN, or far too large or small";
+    PathFault::Speed => "the share of the limits of speed is not above 0, or above 1";
     PathFault::ZeroLength => "nothing moves here: leave the piece out; a pause belongs between two timings";
     PathFault::Gap => "the piece does not begin where the one before it ends";
     PathFault::Jump { joint, by } => "joint {} jumps by {}", joint + 1, by;
-    PathFault::Corner { angle } => "the path has a corner of {} rad: blend it, or stop there and time both sides separately", angle;
+    PathFault::Corner { angle } => "the path has a corner of {} rad: blend it, or stop there", angle;
     PathFault::Scale => "q' changes its length at a knot: scale s of one piece so that q' is continuous";
-    PathFault::TurningBack => "all joints are at rest at this point of the path: stop there and time both sides separately";
+    PathFault::TurningBack => "all joints are at rest at this point of the path: stop there";
 }
 
 /// How far two values of q at a knot may be apart, of the range of the joint.
@@ -198,7 +211,11 @@ impl<T: RealField + Copy, const N: usize, S: AsRef<[Piece<T, N>]>> JointPath<T, 
             if ![piece.length, moves, way].iter().all(|size| (eps * eps..=T::one() / (eps * eps)).contains(size)) {
                 return Err(PathError { s: f64::NAN, piece: i, fault: PathFault::NotFinite });
             }
-            if let Some(s) = rest(piece, moves, i == 0, i + 1 == all.len()) {
+            // Its square, too, is a number.
+            if !(piece.speed > eps && piece.speed <= T::one()) {
+                return Err(fault(piece.start, i, PathFault::Speed));
+            }
+            if let Some(s) = rest(piece, moves, i == 0 || piece.stop, all.get(i + 1).is_none_or(|next| next.stop)) {
                 return Err(fault(s, i, PathFault::TurningBack));
             }
         }
@@ -214,6 +231,9 @@ impl<T: RealField + Copy, const N: usize, S: AsRef<[Piece<T, N>]>> JointPath<T, 
                 if by > lit::<T>(JUMP) * range[joint].max(lit(1e-3)) {
                     return Err(fault(after.start, i + 1, PathFault::Jump { joint, by: number(by) }));
                 }
+            }
+            if after.stop {
+                continue;
             }
             let (a, b) = (left.slope / left.slope.norm(), right.slope / right.slope.norm());
             let apart = (b - a).norm();
@@ -237,7 +257,8 @@ impl<T: RealField + Copy, const N: usize, S: AsRef<[Piece<T, N>]>> JointPath<T, 
     }
 }
 
-/// Where all joints rest inside a piece: at a common root of all rates. The two ends of the path may rest there.
+/// Where all joints rest inside a piece: at a common root of all rates. They may rest at its start if it is the `first` or stops there,
+/// and at its end if it is the `last` or the next one stops there.
 fn rest<T: RealField + Copy, const N: usize>(piece: &Piece<T, N>, moves: T, first: bool, last: bool) -> Option<T> {
     let small = moves * lit(1e-9);
     let mut candidates = [T::zero(); ORDER + 2];

@@ -25,16 +25,18 @@ use nalgebra::{RealField, SVector};
 #[derive(Clone, Copy, Debug)]
 pub struct Node<T, const N: usize> {
     pub(super) torques: [SVector<T, N>; 3],
+    /// Squares of the end effector's speed and turn rate for ds = 1; 0 where they are not limited.
+    pub(super) tool: [T; 2],
 }
 
 impl<T: RealField + Copy, const N: usize> Node<T, N> {
     /// Storage without content.
     pub fn empty() -> Self {
-        Self { torques: [SVector::zeros(); 3] }
+        Self { torques: [SVector::zeros(); 3], tool: [T::zero(); 2] }
     }
 
-    pub(super) fn new(torques: PathTorques<T, N>) -> Self {
-        Self { torques: [torques.inertial, torques.velocity, torques.gravity] }
+    pub(super) fn new(torques: PathTorques<T, N>, tool: [T; 2]) -> Self {
+        Self { torques: [torques.inertial, torques.velocity, torques.gravity], tool }
     }
 }
 
@@ -69,8 +71,14 @@ pub struct Segment<T, const N: usize> {
     pub(super) torques: [[Column<T>; N]; 3],
     /// q', q'' and q'^2 of each joint.
     pub(super) rates: [[Column<T>; N]; 3],
+    /// Squares of the end effector's speed and turn rate for ds = 1.
+    pub(super) tool: [Column<T>; 2],
     /// Signs of q'.
     pub(super) signs: [T; N],
+    /// The share of the limits of speed.
+    pub(super) speed: T,
+    /// Whether the motion rests at its left end.
+    pub(super) stop: bool,
     pub(super) bound: Bound<T>,
     pub(super) inner: Inner<T>,
     /// Time at which it begins, s.
@@ -143,7 +151,10 @@ impl<T: RealField + Copy, const N: usize> Segment<T, N> {
             length: zero,
             torques: [[column; N]; 3],
             rates: [[column; N]; 3],
+            tool: [column; 2],
             signs: [zero; N],
+            speed: T::one(),
+            stop: false,
             bound: Bound { node: zero, forward: zero, backward: zero, barriers: [None; 3] },
             inner: Inner { interval: [zero; 2], law, trial: [zero; 2], assumed: Assumed { x: [zero; 2], touch: zero, u: zero } },
             time: zero,
@@ -158,7 +169,7 @@ impl<T: RealField + Copy, const N: usize> Segment<T, N> {
     pub(super) fn part(&self, from: T) -> Self {
         let rest = T::one() - from;
         let mut part = Self { start: self.start + self.length * from, length: self.length * rest, ..*self };
-        for of in part.torques.iter_mut().chain(&mut part.rates).flatten() {
+        for of in part.torques.iter_mut().chain(&mut part.rates).flatten().chain(&mut part.tool) {
             let [a, b, c] = of.quadratic;
             let (left, right) = (a * rest + b * from, b * rest + c * from);
             of.quadratic = [left * rest + right * from, right, c];
@@ -183,14 +194,17 @@ impl<T: RealField + Copy, const N: usize> Segment<T, N> {
         self.start + self.length
     }
 
-    /// How many rows a segment has: torque and acceleration of each joint, both sides, and speed.
-    pub(super) const ROWS: usize = 5 * N;
+    /// How many rows a segment has: torque and acceleration of each joint, both sides, and speed; speed and turn rate of the end effector.
+    pub(super) const ROWS: usize = Self::TOOL + 2;
+
+    /// Before those of the end effector.
+    pub(super) const TOOL: usize = 5 * N;
 
     /// Of which a slope of x enters.
     pub(super) const SLOPED: usize = 4 * N;
 
     /// Row `index` as an upper bound, `None` where the limit is infinite. The rows of a joint: torque high, torque low, then of all joints
-    /// acceleration high, low, then speed. Friction that grows with |g| enters from above, or if `relaxed` from below.
+    /// acceleration high, low, then speed, then the end effector's. Friction that grows with |g| enters from above, or if `relaxed` from below.
     pub(super) fn row(
         &self,
         index: usize,
@@ -202,8 +216,12 @@ impl<T: RealField + Copy, const N: usize> Segment<T, N> {
         match group {
             0 => self.torque(joint, index % 2, limits.effort.get(joint)?, friction.get(joint)?, relaxed),
             1 => self.acceleration(joint, index % 2, *limits.acceleration.get(joint)?),
-            _ => self.speed(index - 4 * N, *limits.velocity.get(index - 4 * N)?),
+            _ if index < Self::TOOL => {
+                Some(self.speed(self.rates[2].get(index - Self::SLOPED)?, *limits.velocity.get(index - Self::SLOPED)?))
+            }
+            _ => Some(self.speed(self.tool.get(index - Self::TOOL)?, *limits.tool?.both().get(index - Self::TOOL)?)),
         }
+        .filter(|row| row.bound.is_finite())
     }
 
     /// Calls `with` with each row into which a slope of x enters and whose m and side (0: high, 1: low) are wanted, and its index, in order.
@@ -233,12 +251,17 @@ impl<T: RealField + Copy, const N: usize> Segment<T, N> {
         }
     }
 
-    /// |dq| at most `limit`, squared.
+    /// What speeds squared may be at most under a limit.
+    pub(super) fn most(&self, limit: T) -> T {
+        let limit = limit * self.speed;
+        limit * limit
+    }
+
+    /// A speed at most `limit`, squared.
     #[inline]
-    fn speed(&self, joint: usize, limit: T) -> Option<Row<T>> {
+    fn speed(&self, square: &Column<T>, limit: T) -> Row<T> {
         let zero = [T::zero(); 3];
-        let square = self.rates[2].get(joint)?;
-        limit.is_finite().then(|| Row {
+        Row {
             m: zero,
             c: square.quadratic,
             v: zero,
@@ -247,9 +270,9 @@ impl<T: RealField + Copy, const N: usize> Segment<T, N> {
             c_error: square.error,
             v_error: T::zero(),
             d_error: T::zero(),
-            bound: limit * limit,
+            bound: self.most(limit),
             curve: None,
-        })
+        }
     }
 
     /// ddq at most `limit`, or at least -`limit`.
@@ -341,16 +364,21 @@ pub enum Limit {
     AccelerationLow,
     /// The speed.
     Velocity,
+    /// The speed of the end effector.
+    ToolSpeed,
+    /// The angular speed of the end effector.
+    ToolTurnRate,
 }
 
-/// The limit of row `index` of `joints` joints, and the joint.
+/// The limit of row `index` of `joints` joints, and the joint; of the end effector, the last one.
 pub(super) fn limit(index: usize, joints: usize) -> (Limit, usize) {
     match index / (2 * joints.max(1)) {
         0 if index.is_multiple_of(2) => (Limit::EffortHigh, index / 2),
         0 => (Limit::EffortLow, index / 2),
         1 if index.is_multiple_of(2) => (Limit::AccelerationHigh, (index - 2 * joints) / 2),
         1 => (Limit::AccelerationLow, (index - 2 * joints) / 2),
-        _ => (Limit::Velocity, index - 4 * joints),
+        _ if index < 5 * joints => (Limit::Velocity, index - 4 * joints),
+        _ => (if index == 5 * joints { Limit::ToolSpeed } else { Limit::ToolTurnRate }, joints.saturating_sub(1)),
     }
 }
 
@@ -445,6 +473,8 @@ pub(super) struct Source<'a, T, const N: usize> {
     pub distance: T,
     /// Sizes of the torques, and their ninth Taylor coefficients.
     pub bounds: &'a [Bounds<T, N>; 2],
+    /// Whether the end effector is limited.
+    pub with_tool: bool,
     pub interpolation: &'a Interpolation<T>,
 }
 
@@ -453,6 +483,7 @@ impl<T: RealField + Copy, const N: usize> Source<'_, T, N> {
     pub(super) fn fill(&self, segment: &mut Segment<T, N>) {
         self.fill_torques(segment);
         self.fill_rates(segment);
+        segment.speed = self.piece.speed;
     }
 
     fn fill_torques(&self, segment: &mut Segment<T, N>) {
@@ -508,6 +539,20 @@ impl<T: RealField + Copy, const N: usize> Source<'_, T, N> {
                     error: steepest[joint] * cube + ninth[part][joint] * remainder + sizes[part][joint] * rounding,
                 };
             }
+        }
+        if !self.with_tool {
+            return;
+        }
+        for part in 0..2 {
+            let dot = |weights: &[T; NINE]| {
+                weights.iter().zip(window).fold(T::zero(), |sum, (weight, node)| sum + *weight * node.tool[part])
+            };
+            let at = |place: usize| nodes[place].map_or_else(|| dot(&weights[place]), |node| node.tool[part]);
+            let [left, middle, right] = [at(0), at(1), at(2)];
+            let steepest = third.iter().fold(T::zero(), |steepest, row| most(steepest, dot(row).abs()));
+            let [size, ninth] = [self.bounds[0].tool[part], self.bounds[1].tool[part]];
+            segment.tool[part] =
+                Column { quadratic: through(left, middle, right), error: steepest * cube + ninth * remainder + size * rounding };
         }
     }
 
@@ -576,18 +621,19 @@ mod tests {
     #[test]
     fn the_ninth_coefficient_bounds_what_the_nodes_do_not_see() {
         let distance = 0.1f64;
-        let piece = Piece { start: 0.0, length: 8.0 * distance, coefficients: [SVector::<f64, 1>::zeros(); 6] };
-        let of = |x: f64| Bounds { inertial: [x], velocity: [x], gravity: [x] };
+        let piece = Piece::new(0.0, 8.0 * distance, [SVector::<f64, 1>::zeros(); 6]);
+        let of = |x: f64| Bounds { inertial: [x], velocity: [x], gravity: [x], tool: [x; 2] };
         let bounds = [of(0.0), of(distance.powi(-9))];
         let (nodes, interpolation) = (vec![Node::empty(); NINE], Interpolation::new());
-        let source = Source { piece: &piece, nodes: &nodes, distance, bounds: &bounds, interpolation: &interpolation };
+        let source =
+            Source { piece: &piece, nodes: &nodes, distance, bounds: &bounds, with_tool: true, interpolation: &interpolation };
         for a in 0..NINE - 2 {
             let mut segment = Segment { node: a, ends: [0.0, 2.0], length: 2.0 * distance, ..Segment::empty() };
             source.fill(&mut segment);
             let product = |t: f64| (0..NINE).map(|k| t - k as f64).product::<f64>().abs();
             let most = (0..=400).map(|i| product(a as f64 + f64::from(i) / 200.0)).fold(0.0, f64::max);
-            for part in &segment.torques {
-                assert!((most..4.0 * most).contains(&part[0].error), "{a}: {} for {most}", part[0].error);
+            for of in segment.torques.iter().flatten().chain(&segment.tool) {
+                assert!((most..4.0 * most).contains(&of.error), "{a}: {} for {most}", of.error);
             }
         }
     }

@@ -19,7 +19,7 @@ use nalgebra::RealField;
 pub struct Ends<T> {
     /// ds at the start and at the end, 1/s; at least 0.
     pub speed: [T; 2],
-    /// Whether the arm must be able to hold itself at rest at the end.
+    /// Whether the arm must be able to hold itself at rest at the end, and where it stops.
     pub hold: bool,
 }
 
@@ -107,10 +107,10 @@ pub fn time_optimal<'w, T: RealField + Copy, R: PathDynamics<N, Real = T>, S: As
     }
     let interpolation = Interpolation::new();
     let Workspace { nodes, segments } = work;
-    let (layout, mut count) = grid::build(robot, pieces, nodes, segments, &interpolation)?;
+    let (layout, mut count) = grid::build(robot, pieces, nodes, segments, &interpolation, limits.tool.as_ref())?;
     let curved = friction.iter().any(JointFriction::is_curved);
     let solver = Solver { limits, friction, ends: &ends, curved };
-    solver.check_end(segments, count)?;
+    solver.check_rests(segments, count)?;
     let mut solved = false;
     let mut best = Totals { duration: zero, lower: zero };
     for round in 0..ROUNDS {
@@ -138,7 +138,7 @@ pub fn time_optimal<'w, T: RealField + Copy, R: PathDynamics<N, Real = T>, S: As
             }
             break;
         }
-        count = grid::halve(robot, pieces, &layout, nodes, segments, count, &interpolation);
+        count = grid::halve(robot, pieces, &layout, nodes, segments, count, &interpolation, limits.tool.as_ref());
         solved = solved && best.duration.is_finite();
     }
     if !solved || !best.duration.is_finite() {
@@ -154,15 +154,18 @@ struct Totals<T> {
 }
 
 impl<T: RealField + Copy, const N: usize> Solver<'_, T, N> {
-    /// Whether the arm can be held at rest at the end.
-    fn check_end(&self, segments: &[Segment<T, N>], count: usize) -> Result<(), TimingError> {
-        let Some(last) = count.checked_sub(1).and_then(|i| segments.get(i)).filter(|_| self.ends.hold) else { return Ok(()) };
-        if self.ends.speed[1] > T::zero() {
-            return Ok(());
-        }
-        if let Some((joint, torque, limit)) = last.unheld(true, self.limits, self.friction) {
-            let fault = TimingFault::EndNotHeld { joint, torque: number(torque), limit: number(limit) };
-            return Err(TimingError { s: number(last.end()), piece: last.piece, fault });
+    /// Whether the arm can be held at rest where it stops, and at the end.
+    fn check_rests(&self, segments: &[Segment<T, N>], count: usize) -> Result<(), TimingError> {
+        let segments = segments.get(..count).filter(|_| self.ends.hold).unwrap_or(&[]);
+        let stops = segments.windows(2).filter_map(|pair| match pair {
+            [before, after] if after.stop => Some(before),
+            _ => None,
+        });
+        for of in stops.chain(segments.last().filter(|_| self.ends.speed[1] == T::zero())) {
+            if let Some((joint, torque, limit)) = of.unheld(true, self.limits, self.friction) {
+                let fault = TimingFault::EndNotHeld { joint, torque: number(torque), limit: number(limit) };
+                return Err(TimingError { s: number(of.end()), piece: of.piece, fault });
+            }
         }
         Ok(())
     }
@@ -183,6 +186,7 @@ impl<T: RealField + Copy, const N: usize> Solver<'_, T, N> {
             }
             match outer::node_bound(left, right, self.limits, self.friction, &mut side) {
                 NodeBound::AtMost(x) => {
+                    let x = if segments[i].stop { T::zero() } else { x };
                     segments[i].changed |= x != segments[i].bound.node;
                     segments[i].bound.node = x;
                 }

@@ -32,6 +32,8 @@ pub struct Margins<T, const N: usize> {
     pub acceleration: [T; N],
     /// tau over its limit of the same sign.
     pub effort: [T; N],
+    /// The end effector's speed and turn rate over their limits.
+    pub tool: [T; 2],
 }
 
 /// The law of one segment, for files and figures.
@@ -234,7 +236,8 @@ impl<'a, T: RealField + Copy, const N: usize> Timing<'a, T, N> {
 
     /// Largest speeds, accelerations and torques as shares of their limits, at nine places of each segment.
     pub fn margins(&self) -> Margins<T, N> {
-        let mut margins = Margins { velocity: [T::zero(); N], acceleration: [T::zero(); N], effort: [T::zero(); N] };
+        let mut margins =
+            Margins { velocity: [T::zero(); N], acceleration: [T::zero(); N], effort: [T::zero(); N], tool: [T::zero(); 2] };
         for segment in self.segments {
             for i in 0..9 {
                 self.shares(segment, lit(f64::from(i) / 8.0), |row, share| {
@@ -243,6 +246,12 @@ impl<'a, T: RealField + Copy, const N: usize> Timing<'a, T, N> {
                         Limit::EffortHigh | Limit::EffortLow => &mut margins.effort,
                         Limit::AccelerationHigh | Limit::AccelerationLow => &mut margins.acceleration,
                         Limit::Velocity => &mut margins.velocity,
+                        Limit::ToolSpeed | Limit::ToolTurnRate => {
+                            let [speed, turn_rate] = &mut margins.tool;
+                            let most = if limit == Limit::ToolSpeed { speed } else { turn_rate };
+                            *most = most.max(share);
+                            return;
+                        }
                     };
                     if let Some(most) = of.get_mut(joint) {
                         *most = most.max(share);

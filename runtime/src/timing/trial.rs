@@ -74,11 +74,31 @@ struct Reached<T> {
 
 /// Storage of formed rows, for one trial after another.
 #[derive(Debug)]
-pub(super) struct Formed<T, const N: usize>([[Option<FormedRow<T>>; 5]; N]);
+pub(super) struct Formed<T, const N: usize> {
+    joints: [[Option<FormedRow<T>>; 5]; N],
+    tool: [Option<FormedRow<T>>; 2],
+}
 
 impl<T: RealField + Copy, const N: usize> Formed<T, N> {
     pub(super) fn new() -> Self {
-        Self([[None; 5]; N])
+        Self { joints: [[None; 5]; N], tool: [None; 2] }
+    }
+
+    /// All places, of rows of whatever kind.
+    fn all(&self) -> impl Iterator<Item = &Option<FormedRow<T>>> {
+        self.joints.as_flattened().iter().chain(&self.tool)
+    }
+
+    fn at(&self, place: usize) -> Option<&FormedRow<T>> {
+        let joints = self.joints.as_flattened();
+        joints.get(place).or_else(|| self.tool.get(place - joints.len().min(place))).and_then(Option::as_ref)
+    }
+
+    fn put(&mut self, place: usize, row: FormedRow<T>) -> bool {
+        let joints = self.joints.as_flattened_mut();
+        let count = joints.len();
+        let to = if place < count { joints.get_mut(place) } else { self.tool.get_mut(place - count) };
+        to.map(|to| *to = Some(row)).is_some()
     }
 }
 
@@ -219,7 +239,7 @@ impl<'a, T: RealField + Copy, const N: usize> Trial<'a, T, N> {
             let x2 = nearest(&found);
             let reached = self.reached(k, x2);
             let before = self.count;
-            for joint in 0..N {
+            for joint in 0..=N {
                 let doubtful = self.doubtful(joint, &reached);
                 if doubtful == [false; 5] {
                     continue;
@@ -260,7 +280,7 @@ impl<'a, T: RealField + Copy, const N: usize> Trial<'a, T, N> {
             for (x0, [low, high]) in found {
                 self.x0 = x0;
                 let reached = self.reached(k, x0.max(low).min(high));
-                for joint in 0..N {
+                for joint in 0..=N {
                     let rows = rows::<N>(joint).into_iter().zip(self.doubtful(joint, &reached));
                     for (index, _) in rows.filter(|(_, doubtful)| *doubtful) {
                         self.form(index);
@@ -296,20 +316,18 @@ impl<'a, T: RealField + Copy, const N: usize> Trial<'a, T, N> {
 
     /// Forms a row; `false` where it has been formed.
     fn form(&mut self, index: usize) -> bool {
-        let all = self.formed.0.as_flattened_mut();
-        if all.iter().take(self.count).flatten().any(|of| of.index == index) {
+        if self.formed.all().take(self.count).flatten().any(|of| of.index == index) {
             return false;
         }
         let forms = of_row(self.segment, index, self.limits, self.friction, &self.assumed, &self.window);
-        let Some(to) = all.get_mut(self.count) else { return false };
-        *to = Some(FormedRow { index, forms });
-        self.count += 1;
-        true
+        let is_new = self.formed.put(self.count, FormedRow { index, forms });
+        self.count += usize::from(is_new);
+        is_new
     }
 
     /// What a formed row leaves.
     fn cut(&mut self, at: usize, k: T, found: &mut Interval<T>) {
-        let Some(Some(FormedRow { index, forms: Some(forms) })) = self.formed.0.as_flattened().get(at) else { return };
+        let Some(FormedRow { index, forms: Some(forms) }) = self.formed.at(at) else { return };
         for form in forms {
             if let Some(first) = found.cut(&HalfPlane::of(form, k), self.x0).and_then(|end| self.first.get_mut(end)) {
                 *first = Some(*index);
@@ -329,23 +347,32 @@ impl<'a, T: RealField + Copy, const N: usize> Trial<'a, T, N> {
         Reached { u, x: Spread::between(low, high), root }
     }
 
-    /// The rows of a joint that their intervals do not keep: torque high, torque low, acceleration high, low, speed.
+    /// The rows of a joint, as [`rows`] has them, that their intervals do not keep.
     fn doubtful(&self, joint: usize, at: &Reached<T>) -> [bool; 5] {
-        let Limits { velocity, acceleration, effort } = self.limits;
-        let (Some(of), Some(assumption)) = (self.joints.get(joint), self.assumption.get(joint)) else { return [false; 5] };
+        let Limits { velocity, acceleration, effort, tool } = self.limits;
+        // More than what is lost by rounding.
+        let share: T = T::one() - lit::<T>(1e-6) - lit::<T>(64.0) * T::default_epsilon();
+        let is_fast = |square: T, limit: T| !(square * (at.x.middle + at.x.reach) <= self.segment.most(limit) * share);
+        let (Some(of), Some(assumption)) = (self.joints.get(joint), self.assumption.get(joint)) else {
+            let mut doubtful = [false; 5];
+            let limits = tool.iter().flat_map(|tool| tool.both());
+            for ((to, square), limit) in doubtful.iter_mut().zip(&self.segment.tool).zip(limits) {
+                let [a, b, c] = square.quadratic;
+                *to = is_fast(most(most(a, b), c).max(T::zero()) + square.error, limit);
+            }
+            return doubtful;
+        };
         let (Some(velocity), Some(acceleration), Some([low, high])) =
             (velocity.get(joint), acceleration.get(joint), effort.get(joint))
         else {
             return [false; 5];
         };
-        // More than what is lost by rounding.
-        let share: T = T::one() - lit::<T>(1e-6) - lit::<T>(64.0) * T::default_epsilon();
         let [m, c, d] = &of.torque;
         let mut torque = m.times(&at.u).plus(c.times(&at.x)).plus(*d).plus(*assumption);
         if let Some(v) = &of.v {
             torque = torque.plus(v.times(&at.root));
         }
-        let is_fast = acceleration.is_finite() && {
+        let is_steep = acceleration.is_finite() && {
             let error = Spread { middle: T::zero(), reach: of.rate_error * self.assumed.u };
             let all = of.rate.times(&at.u).plus(of.curvature.times(&at.x)).plus(error);
             !(all.size() <= *acceleration * share)
@@ -353,15 +380,18 @@ impl<'a, T: RealField + Copy, const N: usize> Trial<'a, T, N> {
         [
             !(torque.middle + torque.reach <= *high * share),
             !(torque.middle - torque.reach >= *low * share),
-            is_fast,
-            is_fast,
-            !(of.square[1] * (at.x.middle + at.x.reach) <= *velocity * *velocity * share),
+            is_steep,
+            is_steep,
+            is_fast(of.square[1], *velocity),
         ]
     }
 }
 
-/// The rows of a joint: torque high, torque low, acceleration high, low, speed.
+/// The rows of a joint: torque high, torque low, acceleration high, low, speed; with the number N those of the end effector, two of them.
 fn rows<const N: usize>(joint: usize) -> [usize; 5] {
+    if joint == N {
+        return [0, 1, 2, 3, 4].map(|row| 5 * N + row);
+    }
     [2 * joint, 2 * joint + 1, 2 * (N + joint), 2 * (N + joint) + 1, 4 * N + joint]
 }
 

@@ -1,7 +1,10 @@
 //! Arms of numbers in standard Denavit-Hartenberg rows, by Newton and Euler link by link: written apart from the generator.
 
 use armgen_runtime::timing::{JointFriction, LinkBound, PathDynamics, PathTorques};
-use nalgebra::{Matrix3, Rotation3, SVector, Vector3};
+use nalgebra::{Matrix3, Rotation3, SVector, Vector3, Vector6};
+
+/// The end effector in the frame of the last joint, m.
+pub const TIP: Vector3<f64> = Vector3::new(0.1, -0.05, 0.2);
 
 /// A row and its link; com and inertia (about the centre of mass) in the link frame.
 #[derive(Clone, Copy, Debug)]
@@ -184,6 +187,21 @@ impl<const N: usize> PathDynamics<N> for Chain<N> {
             velocity: self.torque(q, slope, curvature, false),
             gravity: self.torque(q, &zero, &zero, true),
         }
+    }
+
+    /// Of the point [`TIP`], link by link, in the frame of the last joint.
+    fn tool_rate(&self, q: &SVector<f64, N>, slope: &SVector<f64, N>) -> Vector6<f64> {
+        let (mut v, mut w) = (Vector3::zeros(), Vector3::zeros());
+        for (i, joint) in self.joints.iter().enumerate() {
+            let axis = joint.rotation * Vector3::z();
+            let (turn, way) = if joint.slides { (0.0, q[i]) } else { (q[i], 0.0) };
+            let back = (joint.rotation * Rotation3::from_axis_angle(&Vector3::z_axis(), turn).into_inner()).transpose();
+            v += w.cross(&(joint.translation + axis * way));
+            *if joint.slides { &mut v } else { &mut w } += axis * slope[i];
+            (v, w) = (back * v, back * w);
+        }
+        v += w.cross(&TIP);
+        Vector6::new(v.x, v.y, v.z, w.x, w.y, w.z)
     }
 
     fn joint_friction(&self) -> &[JointFriction<f64>; N] {

@@ -1,7 +1,7 @@
 //! The time that no motion beats: which barriers have a bound at their end, and the sum of their durations.
 
 use super::curve::Curve;
-use super::file::{Barrier, Kind, KINDS};
+use super::file::Barrier;
 use super::law::Law;
 use super::rows::{Checker, Functions, Row};
 use super::taylor::{Range, Taylor};
@@ -92,26 +92,24 @@ impl Checker {
     fn pairs(&self, of: &Functions, t: f64) -> (Vec<Sum>, f64) {
         let at = |function: &Taylor| function.at(t);
         let (mut top, mut rows, mut flat) = (f64::INFINITY, Vec::new(), Vec::new());
-        for joint in 0..self.file.joints.len() {
-            for (kind, _) in KINDS {
-                let Some(Row { m, c, v, d, curve }) = self.row(of, joint, kind) else { continue };
-                let (m, c, v, mut d) = (at(&m), at(&c), at(&v), at(&d));
-                let curve = curve.map(|curve| {
-                    let (curve, rest) = curve.over_square(at(&of.rate[joint]));
-                    d = d.plus(rest);
-                    curve
-                });
-                if kind == Kind::Speed && c.low > 0.0 {
-                    top = top.min(d.negated().over(c).map_or(f64::INFINITY, |x| x.high));
-                } else if m.low > 0.0 || m.high < 0.0 {
-                    // c x + v sqrt(x) + d <= -m u, by |m|.
-                    let size = if m.low > 0.0 { m } else { m.negated() };
-                    let by = |x: Range| x.over(size).unwrap_or(Range::ALL);
-                    let curve = curve.map(|curve| curve.times(by(Range::of(1.0))));
-                    rows.push((m.low > 0.0, [by(c), by(v), by(d)], curve));
-                } else {
-                    flat.push((m.size(), [c, v, d], curve));
-                }
+        for (joint, kind, _) in self.file.rows() {
+            let Some(Row { m, c, v, d, curve }) = self.row(of, joint, kind) else { continue };
+            let (m, c, v, mut d) = (at(&m), at(&c), at(&v), at(&d));
+            let curve = curve.map(|curve| {
+                let (curve, rest) = curve.over_square(at(&of.rate[joint]));
+                d = d.plus(rest);
+                curve
+            });
+            if kind.is_speed() && c.low > 0.0 {
+                top = top.min(d.negated().over(c).map_or(f64::INFINITY, |x| x.high));
+            } else if m.low > 0.0 || m.high < 0.0 {
+                // c x + v sqrt(x) + d <= -m u, by |m|.
+                let size = if m.low > 0.0 { m } else { m.negated() };
+                let by = |x: Range| x.over(size).unwrap_or(Range::ALL);
+                let curve = curve.map(|curve| curve.times(by(Range::of(1.0))));
+                rows.push((m.low > 0.0, [by(c), by(v), by(d)], curve));
+            } else {
+                flat.push((m.size(), [c, v, d], curve));
             }
         }
         let lower = |sign: bool| rows.iter().filter(move |row| row.0 == sign).map(|row| (&row.1, row.2));
@@ -170,6 +168,7 @@ impl Checker {
         let mut nodes = Nodes(vec![f64::INFINITY; count + 1]);
         nodes.0[0] = Range::of(file.speed[0]).times(Range::of(file.speed[0])).high;
         nodes.0[count] = Range::of(file.speed[1]).times(Range::of(file.speed[1])).high;
+        nodes.0.iter_mut().enumerate().filter(|(i, _)| file.rests(*i)).for_each(|(_, x)| *x = 0.0);
         let mut open: Vec<(usize, usize)> = Vec::new();
         for (i, of) in file.barriers.iter().enumerate() {
             open.extend((0..of.len()).map(|which| (i, which)));
@@ -232,6 +231,7 @@ impl Nodes {
 
 #[cfg(test)]
 mod tests {
+    use super::super::file::Kind;
     use super::*;
 
     /// From a place on, a sum is above 0 up to its reach, and not above 0 right behind that.

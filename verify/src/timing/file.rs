@@ -9,12 +9,15 @@ pub(super) struct Limits {
     pub(super) velocity: Vec<Option<f64>>,
     pub(super) acceleration: Vec<Option<f64>>,
     pub(super) effort: Vec<[Option<f64>; 2]>,
+    /// Speed and turn rate of the end effector.
+    pub(super) tool: [Option<f64>; 2],
 }
 
 /// A barrier of the file.
 pub(super) struct Barrier {
     pub(super) law: Law,
     pub(super) direction: i64,
+    /// The joint and the limit; of the end effector no joint counts.
     pub(super) row: (usize, Kind),
 }
 
@@ -26,8 +29,22 @@ pub(super) enum Kind {
     AccelerationHigh,
     AccelerationLow,
     Speed,
+    ToolSpeed,
+    ToolTurnRate,
 }
 
+impl Kind {
+    /// Whether it is a bound of x alone.
+    pub(super) fn is_speed(self) -> bool {
+        matches!(self, Kind::Speed | Kind::ToolSpeed | Kind::ToolTurnRate)
+    }
+}
+
+/// Those of the end effector.
+pub(super) const TOOL: [(Kind, &str); 2] =
+    [(Kind::ToolSpeed, "end effector speed"), (Kind::ToolTurnRate, "end effector turn rate")];
+
+/// Those of each joint.
 pub(super) const KINDS: [(Kind, &str); 5] = [
     (Kind::TorqueHigh, "torque high"),
     (Kind::TorqueLow, "torque low"),
@@ -45,6 +62,11 @@ pub(super) struct File {
     pub(super) knots: Vec<f64>,
     /// `[piece][joint][power]`.
     pub(super) coefficients: Vec<Vec<Vec<f64>>>,
+    /// The share of the limits of speed on each piece.
+    pub(super) shares: Vec<f64>,
+    /// Knots at which the motion rests.
+    pub(super) stops: Vec<f64>,
+    /// At both ends.
     pub(super) speed: [f64; 2],
     pub(super) limits: Limits,
     pub(super) s: Vec<f64>,
@@ -78,6 +100,20 @@ fn optional(value: &Value, what: &str) -> Result<Vec<Option<f64>>, String> {
 }
 
 impl File {
+    /// All rows, with their names.
+    pub(super) fn rows(&self) -> impl Iterator<Item = (usize, Kind, String)> + '_ {
+        let of_joint = |(joint, name): (usize, &String)| {
+            let name = name.clone();
+            KINDS.map(|(kind, text)| (joint, kind, format!("{name} {text}")))
+        };
+        self.joints.iter().enumerate().flat_map(of_joint).chain(TOOL.map(|(kind, text)| (0, kind, text.to_owned())))
+    }
+
+    /// Whether the motion rests at node `i` of the grid.
+    pub(super) fn rests(&self, i: usize) -> bool {
+        self.stops.iter().any(|stop| (self.s[i] - stop).abs() <= ROUNDING * (1.0 + stop.abs()))
+    }
+
     pub(super) fn read(text: &str) -> Result<File, String> {
         let json: Value = serde_json::from_str(text).map_err(|error| format!("no JSON: {error}"))?;
         let joints: Vec<String> = list(at(&json, "joints")?, "joints")?
@@ -94,10 +130,17 @@ impl File {
         let of_joints = |key: &str| -> Result<Vec<Option<f64>>, String> { optional(at(&json, key)?, key) };
         let effort = list(at(&json, "limits.effort")?, "limits.effort")?;
         let effort = effort.iter().map(|both| optional(both, "limits.effort")).collect::<Result<Vec<_>, _>>()?;
+        // Files without these keys have no such limits.
+        let given = |key: &str| at(&json, key).ok().map(|of| optional(of, key)).transpose();
+        let tool = given("limits.tool")?.unwrap_or_else(|| vec![None; 2]);
+        let listed = |key: &str| at(&json, key).ok().map(|of| numbers(of, key)).transpose();
+        let shares = listed("path.speed")?.unwrap_or_else(|| vec![1.0; coefficients.len()]);
+        let stops = listed("path.stops")?.unwrap_or_default();
         let limits = Limits {
             velocity: of_joints("limits.velocity")?,
             acceleration: of_joints("limits.acceleration")?,
             effort: effort.iter().filter_map(|both| both.as_slice().try_into().ok()).collect(),
+            tool: tool.as_slice().try_into().map_err(|_| "`limits.tool` is not a speed and a turn rate".to_owned())?,
         };
         let speed = numbers(at(&json, "ends.speed")?, "ends.speed")?;
         let [s, t, x, k] = ["grid.s", "grid.t", "grid.x", "grid.k"].map(|key| at(&json, key).and_then(|of| numbers(of, key)));
@@ -106,6 +149,7 @@ impl File {
             && knots.len() == coefficients.len() + 1
             && coefficients.iter().all(|piece| piece.len() == n && piece.iter().all(|of| (1..=6).contains(&of.len())))
             && [limits.velocity.len(), limits.acceleration.len(), limits.effort.len()] == [n; 3]
+            && shares.len() == coefficients.len()
             && speed.len() == 2
             && s.len() > 1
             && [t.len(), x.len(), k.len() + 1] == [s.len(); 3];
@@ -116,6 +160,12 @@ impl File {
         let off = |(a, b): (f64, f64)| (a - b).abs() > ROUNDING * (1.0 + b.abs());
         if knots.windows(2).chain(s.windows(2)).any(|pair| pair[0] >= pair[1]) || ends.into_iter().any(off) {
             return Err("`grid.s` does not run from the first knot to the last".to_owned());
+        }
+        if shares.iter().any(|share| !(*share > 0.0 && *share <= 1.0)) {
+            return Err("`path.speed` has something other than shares".to_owned());
+        }
+        if stops.iter().any(|stop| !knots[1..knots.len() - 1].contains(stop)) {
+            return Err("`path.stops` has something other than knots inside the path".to_owned());
         }
         let laws: Vec<Law> = k.iter().enumerate().map(|(i, k)| Law { x: [x[i], x[i + 1]], k: *k }).collect();
         let bound = |key: &str| list(at(&json, &format!("bound.{key}"))?, key).map(<[Value]>::to_vec);
@@ -129,7 +179,9 @@ impl File {
                 let kind = text.strip_prefix(name.as_str())?.strip_prefix(' ')?;
                 KINDS.iter().find(|(_, of)| *of == kind).map(|(kind, _)| (joint, *kind))
             };
-            let row = joints.iter().enumerate().find_map(named).ok_or_else(|| format!("there is no limit `{text}`"))?;
+            let of_tool = TOOL.iter().find(|(_, of)| *of == text).map(|(kind, _)| (0, *kind));
+            let row = of_tool.or_else(|| joints.iter().enumerate().find_map(named));
+            let row = row.ok_or_else(|| format!("there is no limit `{text}`"))?;
             let law = Law { x: [number(x0, "bound.x0")?, number(x2, "bound.x2")?], k: number(k, "bound.k")? };
             let direction = direction.as_i64().ok_or("`bound.direction` has something other than 1, 0 and -1")?;
             Ok(Barrier { law, direction, row })
@@ -147,6 +199,7 @@ impl File {
         }
         let duration = number(at(&json, "duration")?, "duration")?;
         let lower_bound = number(at(&json, "lower_bound")?, "lower_bound")?;
-        Ok(File { joints, knots, coefficients, speed: [speed[0], speed[1]], limits, s, t, laws, barriers, duration, lower_bound })
+        let speed = [speed[0], speed[1]];
+        Ok(File { joints, knots, coefficients, shares, stops, speed, limits, s, t, laws, barriers, duration, lower_bound })
     }
 }

@@ -11,6 +11,7 @@ use crate::textbook::equations::lagrange::spring_torques;
 use crate::textbook::equations::newton_euler::{ArmMotion, Motion};
 use crate::textbook::equations::pose::Pose;
 use crate::textbook::equations::state::State;
+use crate::textbook::equations::vector::{add, cross, scale, sub};
 use crate::values::element::Element;
 use crate::values::float::Arguments;
 
@@ -30,6 +31,10 @@ pub(super) struct Functions {
     pub(super) curvature: Vec<Taylor>,
     /// m, c, g.
     pub(super) torques: [Vec<Taylor>; 3],
+    /// Squares of the end effector's speed and turn rate for ds = 1, if one is limited.
+    pub(super) tool: Option<[Taylor; 2]>,
+    /// The share of the limits of speed.
+    pub(super) share: Range,
     pub(super) h: Range,
 }
 
@@ -111,7 +116,28 @@ impl Checker {
         let velocity = torques(&rate, &curvature, self.arm.nothing());
         let gravity = torques(&none(), &none(), self.arm.gravity.clone());
         let gravity = gravity.iter().zip(spring_torques(&self.arm, &q)).map(|(a, b)| a.plus(&b)).collect();
-        Ok(Functions { q, rate, curvature, torques: [inertial, velocity, gravity], h })
+        let tool = if self.file.limits.tool == [None; 2] { None } else { Some(self.tool(&pose, &rate)?) };
+        let share = Range::of(self.file.shares[piece]);
+        Ok(Functions { q, rate, curvature, torques: [inertial, velocity, gravity], tool, share, h })
+    }
+
+    /// Squares of the speed of the end effector's origin and of its turn rate for ds = 1: each joint on the way to it turns it about its
+    /// axis, or moves it along.
+    fn tool(&self, pose: &Pose<Taylor>, rate: &[Taylor]) -> Result<[Taylor; 2], String> {
+        let ([tip], [frame]) = (self.arm.tips.as_slice(), pose.tools.as_slice()) else {
+            return Err("limits of the end effector need one".to_owned());
+        };
+        let (mut v, mut w) = (self.arm.nothing(), self.arm.nothing());
+        for &joint in &pose.ancestors[tip.link] {
+            let along = scale(&rate[joint], &pose.axes[joint]);
+            if self.arm.joints[joint].revolute {
+                v = add(&v, &cross(&along, &sub(&frame.origin, &pose.joints[joint].origin)));
+                w = add(&w, &along);
+            } else {
+                v = add(&v, &along);
+            }
+        }
+        Ok([v, w].map(|of| of.iter().fold(self.arm.zero.clone(), |sum, x| sum.plus(&x.times(x)))))
     }
 
     /// A limit on a segment; `None` without a limit.
@@ -133,12 +159,15 @@ impl Checker {
             curve: None,
         };
         let (rate, curvature) = (&of.rate[joint], &of.curvature[joint]);
+        let speed = |c: Taylor, limit: f64| {
+            let limit = Range::of(limit).times(of.share);
+            let d = Taylor::constant(limit.times(limit).negated());
+            Row { m: zero.clone(), c, v: zero.clone(), d, curve: None }
+        };
         Some(match kind {
-            Kind::Speed => {
-                let limit = Range::of(limits.velocity[joint]?);
-                let d = Taylor::constant(limit.times(limit).negated());
-                Row { m: zero.clone(), c: rate.times(rate), v: zero, d, curve: None }
-            }
+            Kind::Speed => speed(rate.times(rate), limits.velocity[joint]?),
+            Kind::ToolSpeed => speed(of.tool.as_ref()?[0].clone(), limits.tool[0]?),
+            Kind::ToolTurnRate => speed(of.tool.as_ref()?[1].clone(), limits.tool[1]?),
             Kind::AccelerationHigh => upper(rate, curvature, zero.clone(), zero, limits.acceleration[joint]?),
             Kind::AccelerationLow => lower(rate, curvature, zero.clone(), zero, -limits.acceleration[joint]?),
             Kind::TorqueHigh | Kind::TorqueLow => {

@@ -9,7 +9,7 @@ use armgen_codegen::schedule::{self, Options, Selection};
 use armgen_codegen::{Model, Trig};
 use armgen_evaluate::{program, Program, Workspace};
 use armgen_runtime::timing::{JointFriction, LinkBound, PathDynamics, PathTorques};
-use nalgebra::{Matrix3, SVector, Vector3};
+use nalgebra::{Matrix3, SVector, Vector3, Vector6};
 
 /// Lengths and inertias are sums of few terms, rounded to nearest: this much more bounds them.
 const UPWARDS: f64 = 1.0 + 1e-12;
@@ -19,6 +19,10 @@ pub(super) struct Arm<const N: usize> {
     dof: usize,
     inverse_dynamics: Program<f64>,
     workspace: RefCell<Workspace<f64>>,
+    /// J of the one end effector, where its speed is asked for.
+    jacobian: Option<(Program<f64>, RefCell<Workspace<f64>>)>,
+    /// The joint whose link carries the end effector, and how far from its origin at most, m.
+    tip: (usize, f64),
     friction: [JointFriction<f64>; N],
     links: [LinkBound<f64>; N],
     gravity: f64,
@@ -26,7 +30,8 @@ pub(super) struct Arm<const N: usize> {
 
 impl<const N: usize> Arm<N> {
     /// The arm of a description of at most N joints without smooth friction; `None` where it has no equations of motion.
-    pub(super) fn new(manipulator: &Manipulator) -> Option<Arm<N>> {
+    /// `is_led`: it has one end effector, whose speed is asked for.
+    pub(super) fn new(manipulator: &Manipulator, is_led: bool) -> Option<Arm<N>> {
         if manipulator.is_massless() {
             return None;
         }
@@ -55,13 +60,38 @@ impl<const N: usize> Arm<N> {
                 motor.viscous = None;
             }
         }
-        let functions = Selection::named(["inverse_dynamics"]).expect("a function of the catalogue");
-        let module = schedule::module(&Model::new(bare), &Options { trig: Trig::Fast, functions, ..Options::default() });
-        let inverse_dynamics: Program<f64> = program(&module, &module.functions[0]);
-        let workspace = RefCell::new(inverse_dynamics.workspace());
+        let model = Model::new(bare);
+        let function = |name: &str| {
+            let functions = Selection::named([name]).expect("a function of the catalogue");
+            let module = schedule::module(&model, &Options { trig: Trig::Fast, functions, ..Options::default() });
+            let function: Program<f64> = program(&module, &module.functions[0]);
+            let workspace = RefCell::new(function.workspace());
+            (function, workspace)
+        };
+        let (inverse_dynamics, workspace) = function("inverse_dynamics");
+        let jacobian = is_led.then(|| function("geometric_jacobian"));
+        let tip = manipulator.tip.index();
+        let (rotation, origin) = frame(&manipulator.joints[tip].link_frame, &value);
+        let tip = (tip, (rotation * frame(&manipulator.tool.frame, &value).1 + origin).norm() * UPWARDS);
         let gravity = Vector3::from(std::array::from_fn(|i| value(&manipulator.gravity[i]))).norm() * UPWARDS;
         let links = links(manipulator, &value);
-        Some(Arm { dof: manipulator.dof(), inverse_dynamics, workspace, friction, links, gravity })
+        Some(Arm { dof: manipulator.dof(), inverse_dynamics, workspace, jacobian, tip, friction, links, gravity })
+    }
+
+    /// Whether the speed of its end effector is known.
+    pub(super) fn is_led(&self) -> bool {
+        self.jacobian.is_some()
+    }
+
+    /// The joint whose link carries the end effector, and how far from its origin at most, m.
+    pub(super) fn tip(&self) -> (usize, f64) {
+        self.tip
+    }
+
+    /// The speed and the turn rate of the end effector, m/s and rad/s; 0 where they are not asked for.
+    pub(super) fn tool_speeds(&self, q: &SVector<f64, N>, dq: &SVector<f64, N>) -> [f64; 2] {
+        let rate = self.tool_rate(q, dq);
+        [rate.fixed_rows::<3>(0).norm(), rate.fixed_rows::<3>(3).norm()]
     }
 
     /// tau with friction of joints that move, or begin to move, in the directions of `forwards`.
@@ -194,6 +224,13 @@ impl<const N: usize> PathDynamics<N> for Arm<N> {
             velocity: self.bare(q, slope, curvature) - gravity,
             gravity,
         }
+    }
+
+    fn tool_rate(&self, q: &SVector<f64, N>, slope: &SVector<f64, N>) -> Vector6<f64> {
+        let Some((jacobian, workspace)) = &self.jacobian else { return Vector6::zeros() };
+        let mut j = vec![0.0; jacobian.outputs()];
+        jacobian.run(&[&q.as_slice()[..self.dof]], &mut j, &mut workspace.borrow_mut()).expect("the lengths of this arm");
+        Vector6::from_fn(|row, _| (0..self.dof).map(|joint| j[row * self.dof + joint] * slope[joint]).sum())
     }
 
     fn joint_friction(&self) -> &[JointFriction<f64>; N] {

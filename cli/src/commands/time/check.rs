@@ -48,11 +48,21 @@ struct Worst {
     sampled: f64,
 }
 
-/// The kinds of limits, in the order of the report.
-const KINDS: [&str; 4] = ["position", "speed", "acceleration", "torque"];
+/// The kinds of limits, in the order of the report; from [`TOOL`] on of the end effector.
+const KINDS: [&str; 6] = ["position", "speed", "acceleration", "torque", "speed", "turn rate"];
+const TOOL: usize = 4;
 
-/// The worst values, `[kind][joint]`; `None` without a limit.
-type Verdict = [Vec<Option<Worst>>; 4];
+/// The worst values, `[kind][joint]`; `None` without a limit. Those of the end effector are in the place of the first joint.
+type Verdict = [Vec<Option<Worst>>; 6];
+
+/// Who has a limit, for tables.
+fn owner(manipulator: &Manipulator, kind: usize, joint: usize) -> &str {
+    if kind >= TOOL {
+        "end effector"
+    } else {
+        &manipulator.joints[joint].name
+    }
+}
 
 pub(super) fn run(robot: &Path, path: Option<&Path>, trajectory: &Path) -> Result<u8, u8> {
     let source = input::description(robot)?;
@@ -91,11 +101,12 @@ pub(super) fn run(robot: &Path, path: Option<&Path>, trajectory: &Path) -> Resul
         if worst.excess > ROUNDING {
             exceeded = true;
             let unit = units(&manipulator, joint)[kind];
+            let owner = owner(&manipulator, kind, joint);
+            let owner = if kind >= TOOL { format!("the {owner}") } else { format!("joint `{owner}`") };
             terminal::error(&format!(
-                "{}: limit-exceeded: at t = {} s the {name} of joint `{}` is {} {unit}, beyond its limit of {} {unit}",
+                "{}: limit-exceeded: at t = {} s the {name} of {owner} is {} {unit}, beyond its limit of {} {unit}",
                 text.name(),
                 short(worst.t),
-                manipulator.joints[joint].name,
                 short(worst.value),
                 short(worst.limit)
             ));
@@ -104,11 +115,11 @@ pub(super) fn run(robot: &Path, path: Option<&Path>, trajectory: &Path) -> Resul
     Ok(if code == DONE && exceeded { FAULTY } else { code })
 }
 
-/// Of position, speed, acceleration, torque.
-fn units(manipulator: &Manipulator, joint: usize) -> [&'static str; 4] {
+/// Of the kinds of limits.
+fn units(manipulator: &Manipulator, joint: usize) -> [&'static str; 6] {
     match manipulator.joints[joint].kind {
-        JointKind::Prismatic => ["m", "m/s", "m/s²", "N"],
-        JointKind::Revolute => ["rad", "rad/s", "rad/s²", "N m"],
+        JointKind::Prismatic => ["m", "m/s", "m/s²", "N", "m/s", "rad/s"],
+        JointKind::Revolute => ["rad", "rad/s", "rad/s²", "N m", "m/s", "rad/s"],
     }
 }
 
@@ -216,7 +227,7 @@ fn pieces<const N: usize>(samples: &Samples) -> Vec<Piece<f64, N>> {
     let t = &samples.t;
     let n = t.len() - 1;
     let h: Vec<f64> = t.windows(2).map(|pair| pair[1] - pair[0]).collect();
-    let empty = |i: usize| Piece { start: t[i], length: h[i], coefficients: [SVector::zeros(); 6] };
+    let empty = |i: usize| Piece::new(t[i], h[i], [SVector::zeros(); 6]);
     let mut pieces: Vec<Piece<f64, N>> = (0..n).map(empty).collect();
     let [Some(q), dq, ddq] = &samples.values else { return pieces };
     for (joint, q) in q.iter().enumerate() {
@@ -315,8 +326,9 @@ fn judged<const N: usize>(
             }
         }
     }
-    if limits.effort.iter().flatten().any(|limit| limit.is_finite()) {
-        let arm: Arm<N> = super::arm(description, manipulator)?;
+    let is_led = limits.tool.iter().any(|limit| limit.is_finite());
+    if is_led || limits.effort.iter().flatten().any(|limit| limit.is_finite()) {
+        let arm: Arm<N> = super::arm(description, manipulator, is_led)?;
         with_spinner("checking torques", || {
             for piece in &pieces {
                 let mut judge = |t: f64, directions: &dyn Fn(&SVector<f64, N>) -> SVector<f64, N>| {
@@ -325,12 +337,32 @@ fn judged<const N: usize>(
                     for joint in 0..dof {
                         take(3, joint, (t, tau[joint]), limits.effort[joint], t == piece.start || t == piece.end());
                     }
+                    for (kind, (speed, limit)) in arm.tool_speeds(&at.q, &at.slope).into_iter().zip(limits.tool).enumerate() {
+                        // A length has one end.
+                        take(TOOL + kind, 0, (t, speed), [-limit, limit], t == piece.start || t == piece.end());
+                    }
                     tau
                 };
                 let own = |slope: &SVector<f64, N>| *slope;
                 let step = piece.length / (PLACES - 1) as f64;
                 let places = (0..PLACES).map(|k| if k + 1 == PLACES { piece.end() } else { piece.start + step * k as f64 });
                 let places: Vec<(f64, SVector<f64, N>)> = places.map(|t| (t, judge(t, &own))).collect();
+                for kind in (0..2).filter(|&kind| limits.tool[kind].is_finite()) {
+                    let speed = |t: f64| {
+                        let at = piece.at(t);
+                        arm.tool_speeds(&at.q, &at.slope)[kind]
+                    };
+                    let speeds: Vec<(f64, f64)> = places.iter().map(|(t, _)| (*t, speed(*t))).collect();
+                    for three in speeds.windows(3) {
+                        let mut three = [three[0], three[1], three[2]];
+                        for _ in 0..VERTICES {
+                            let Some(t) = vertex(&three).filter(|t| (t - three[1].0).abs() > NEAR * step) else { break };
+                            judge(t, &own);
+                            let found = (t, speed(t));
+                            three = if t < three[1].0 { [three[0], found, three[1]] } else { [three[1], found, three[2]] };
+                        }
+                    }
+                }
                 for joint in (0..dof).filter(|&joint| limits.effort[joint].iter().any(|limit| limit.is_finite())) {
                     for three in places.windows(3) {
                         let mut three = [0, 1, 2].map(|k| (three[k].0, three[k].1[joint]));
@@ -389,7 +421,7 @@ fn report(manipulator: &Manipulator, samples: &Samples, verdict: &Verdict) -> St
             let verdict = if worst.excess > ROUNDING { "exceeded" } else { "" };
             table.row([
                 (*name).to_owned(),
-                manipulator.joints[joint].name.clone(),
+                owner(manipulator, kind, joint).to_owned(),
                 format!("{} {unit}", four(worst.value)),
                 format!("{} {unit}", four(worst.limit)),
                 share(worst.value / worst.limit),
@@ -401,6 +433,6 @@ fn report(manipulator: &Manipulator, samples: &Samples, verdict: &Verdict) -> St
     }
     text += &table.text();
     text += "\nPositions, speeds and accelerations are judged everywhere, by roots of polynomials;\n\
-             torques in nine places of each interval, and near those at their extremes.\n";
+             torques and the end effector in nine places of each interval, and near those at their extremes.\n";
     text
 }

@@ -4,7 +4,7 @@ use armgen_runtime::timing::Piece;
 use nalgebra::SVector;
 
 use super::arc::{Arc, STRAIGHT};
-use super::file::{Curve, Form};
+use super::file::{Curve, Form, Passing};
 
 /// Where a piece comes from; points and pieces count from 0.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -37,18 +37,18 @@ fn norm(of: &[f64]) -> f64 {
 /// The pieces of a path. Joints beyond those of the file rest.
 pub(super) fn pieces<const N: usize>(form: &Form) -> Pieces<N> {
     match form {
-        Form::Points { points, arcs, curve, blend, .. } => {
+        Form::Points { points, passing, arcs, curve, blend, .. } => {
             let points: Vec<SVector<f64, N>> = points.iter().map(|q| point(q)).collect();
             match curve {
-                Curve::Spline => spline(&points),
-                Curve::Through => through(&points),
-                Curve::Lines => rounded(&points, arcs, *blend),
+                Curve::Spline => between_stops(&points, passing, spline),
+                Curve::Through => between_stops(&points, passing, through),
+                Curve::Lines => rounded(&points, passing, arcs, *blend),
             }
         }
         Form::Pieces { knots, coefficients, .. } => {
             let mut pieces = Vec::new();
             for (i, (of, knots)) in coefficients.iter().zip(knots.windows(2)).enumerate() {
-                let mut piece = Piece { start: knots[0], length: knots[1] - knots[0], coefficients: [SVector::zeros(); 6] };
+                let mut piece = Piece::new(knots[0], knots[1] - knots[0], [SVector::zeros(); 6]);
                 for (joint, powers) in of.iter().enumerate() {
                     for (to, power) in piece.coefficients.iter_mut().zip(powers) {
                         to[joint] = *power;
@@ -59,6 +59,53 @@ pub(super) fn pieces<const N: usize>(form: &Form) -> Pieces<N> {
             pieces
         }
     }
+}
+
+/// The curve of the points between each stop and the next, one after the other.
+fn between_stops<const N: usize>(
+    points: &[SVector<f64, N>],
+    passing: &[Passing],
+    curve: impl Fn(&[SVector<f64, N>]) -> Pieces<N>,
+) -> Pieces<N> {
+    let mut pieces: Pieces<N> = Vec::new();
+    let mut first = 0;
+    for last in (1..points.len()).filter(|i| passing[*i].stop || i + 1 == points.len()) {
+        let start = pieces.last().map_or(0.0, |(piece, _)| piece.end());
+        for (i, (piece, _)) in curve(&points[first..=last]).into_iter().enumerate() {
+            let piece = Piece { start: start + piece.start, stop: i == 0 && first > 0, ..piece };
+            pieces.push((piece, Origin::Between(first + i)));
+        }
+        first = last;
+    }
+    pieces
+}
+
+/// The same pieces, each with the share of the limits of speed of the nearer point; halfway between two of them pieces are cut.
+pub(super) fn with_speeds<const N: usize>(pieces: Pieces<N>, form: &Form) -> Pieces<N> {
+    let Form::Points { passing, .. } = form else { return pieces };
+    let mut found: Pieces<N> = Vec::new();
+    for run in pieces.chunk_by(|a, b| a.1 == b.1) {
+        let [before, after] = match run[0].1 {
+            Origin::Between(i) => [passing[i].speed, passing[i + 1].speed],
+            Origin::Corner(i) => [passing[i].speed; 2],
+            Origin::Piece(_) => [1.0; 2],
+        };
+        let [from, to] = [run[0].0.start, run[run.len() - 1].0.end()];
+        let (middle, near) = (0.5 * (from + to), 1e-9 * (to - from));
+        for (piece, origin) in run {
+            if before == after || piece.end() <= middle + near {
+                found.push((Piece { speed: before, ..*piece }, *origin));
+            } else if piece.start >= middle - near {
+                found.push((Piece { speed: after, ..*piece }, *origin));
+            } else {
+                // Back and forth: a piece run backwards may be cut at its end.
+                let rest = Piece { length: piece.end() - middle, ..piece.reversed(0.0) }.reversed(middle);
+                found.push((Piece { length: middle - piece.start, speed: before, ..*piece }, *origin));
+                found.push((Piece { speed: after, ..rest }, *origin));
+            }
+        }
+    }
+    found
 }
 
 /// The corners that lines and arcs through points have, and their angles, rad.
@@ -170,7 +217,12 @@ fn through<const N: usize>(points: &[SVector<f64, N>]) -> Pieces<N> {
 /// An arc is a piece from its start to its end of the length of the arc: whoever follows it replaces the position ([`Arc::at`]).
 /// A corner at p between unit directions a and b begins d before p and ends d after it, and is 2 d long in s. Its control points lie at
 /// -1, -0.6, -0.2 times d a and 0.2, 0.6, 1 times d b from p, so it passes p at the distance 3/16 d |b - a|.
-fn rounded<const N: usize>(points: &[SVector<f64, N>], arcs: &[Option<Arc>], blend: Option<f64>) -> Pieces<N> {
+fn rounded<const N: usize>(
+    points: &[SVector<f64, N>],
+    passing: &[Passing],
+    arcs: &[Option<Arc>],
+    blend: Option<f64>,
+) -> Pieces<N> {
     let n = points.len() - 1;
     let ways = points.windows(2).zip(arcs).map(|(pair, arc)| way([pair[0].as_slice(), pair[1].as_slice()], arc.as_ref(), 0.0));
     let length: Vec<f64> = ways.map(|way| norm(&way)).collect();
@@ -179,7 +231,8 @@ fn rounded<const N: usize>(points: &[SVector<f64, N>], arcs: &[Option<Arc>], ble
     // How much of the lines the corner at each point takes.
     let cut: Vec<f64> = (0..=n)
         .map(|i| {
-            let Some(blend) = blend.filter(|_| i > 0 && i < n && arcs[i - 1].is_none() && arcs[i].is_none()) else { return 0.0 };
+            let is_cut = i > 0 && i < n && !passing[i].stop && arcs[i - 1].is_none() && arcs[i].is_none();
+            let Some(blend) = blend.filter(|_| is_cut) else { return 0.0 };
             let turn = (direction[i] - direction[i - 1]).norm();
             if turn <= STRAIGHT {
                 return 0.0;
@@ -193,7 +246,7 @@ fn rounded<const N: usize>(points: &[SVector<f64, N>], arcs: &[Option<Arc>], ble
         let (from, to) = (points[i] + direction[i] * cut[i], points[i + 1] - direction[i] * cut[i + 1]);
         let rest = length[i] - cut[i] - cut[i + 1];
         if rest > 1e-9 * length[i] {
-            let piece = Piece::line(start, rest, from.into(), to.into());
+            let piece = Piece { stop: passing[i].stop, ..Piece::line(start, rest, from.into(), to.into()) };
             start = piece.end();
             pieces.push((piece, Origin::Between(i)));
         }
@@ -201,7 +254,7 @@ fn rounded<const N: usize>(points: &[SVector<f64, N>], arcs: &[Option<Arc>], ble
         if d > 0.0 {
             let (a, b, p) = (direction[i], direction[i + 1], points[i + 1]);
             let control = [p - a * d, p - a * (0.6 * d), p - a * (0.2 * d), p + b * (0.2 * d), p + b * (0.6 * d), p + b * d];
-            let piece = Piece { start, length: 2.0 * d, coefficients: powers(&control, 2.0 * d) };
+            let piece = Piece::new(start, 2.0 * d, powers(&control, 2.0 * d));
             start = piece.end();
             pieces.push((piece, Origin::Corner(i + 1)));
         }

@@ -102,14 +102,17 @@ impl Faults<'_> {
 
     /// Every corner of lines without a blend, and of arcs.
     pub(super) fn of_corners(&self, diagnostics: &mut Diagnostics) {
-        let Form::Points { points, arcs, places, curve: Curve::Lines, blend } = self.form else { return };
-        for (i, angle) in corners(points, arcs) {
+        let Form::Points { points, passing, arcs, places, curve: Curve::Lines, blend } = self.form else { return };
+        for (i, angle) in corners(points, arcs).into_iter().filter(|(i, _)| !passing[*i].stop) {
             let message = format!("point {}: the path has a corner of {} deg", i + 1, short(angle.to_degrees()));
             let help = match (arcs[i - 1].is_some() || arcs[i].is_some(), blend) {
-                (true, _) => "move `via` so that the arc begins and ends along its neighbours, or end the path here",
-                (false, None) => {
-                    "round it, `blend: 0.05` (rad or m from the corner), or end the path here and time the rest by itself"
+                (true, _) => {
+                    "move `via` so that the arc begins and ends along its neighbours, or rest here, `{to: [...], stop: true}`"
                 }
+                (false, None) => match self.file.tip {
+                    None => "round it, `blend: 0.05` (rad or m from the corner), or rest here, `{q: [...], stop: true}`",
+                    Some(_) => "round it, `blend: 0.05` (m or rad from the corner), or rest here, `{to: [...], stop: true}`",
+                },
                 (false, Some(_)) => continue,
             };
             diagnostics.push(Diagnostic::new(Code::Corner, places[i].span, message, "the direction changes", help));
@@ -243,6 +246,8 @@ impl Faults<'_> {
                 (Code::ZeroLength.into(), "leave it out: a pause belongs between two timings".into())
             }
             PathFault::NotFinite => (Shared::NotFinite.into(), "write smaller numbers".into()),
+            // Found in the file.
+            PathFault::Speed => (Code::NotPositive.into(), "write a share above 0 and at most 1".into()),
             PathFault::Gap => (Code::Jump.into(), "begin each piece where the one before it ends".into()),
             PathFault::Jump { .. } => (
                 Code::Jump.into(),
@@ -274,6 +279,12 @@ impl Faults<'_> {
                 format!("its acceleration, at most {} {}/s²", short(self.file.limits.acceleration[joint]), self.unit(joint))
             }
             Limit::Velocity => format!("its speed, at most {} {}/s", short(self.file.limits.velocity[joint]), self.unit(joint)),
+            Limit::ToolSpeed => format!("its speed, at most {} m/s", short(self.file.limits.tool[0])),
+            Limit::ToolTurnRate => format!("its turn rate, at most {} rad/s", short(self.file.limits.tool[1])),
+        };
+        let owner = |joint: usize, limit: Limit| match limit {
+            Limit::ToolSpeed | Limit::ToolTurnRate => "the end effector".to_owned(),
+            _ => format!("joint `{}`", self.name(joint)),
         };
         match fault {
             TimingFault::NotFinite => {
@@ -290,20 +301,20 @@ impl Faults<'_> {
                 let rest = q.map_or_else(String::new, |q| {
                     format!("; to be held at rest here it needs {}", self.torque(joint, arm.holding(&q, joint).0))
                 });
-                let reason = format!("at no speed does joint `{}` keep {}{rest}", self.name(joint), limited(joint, limit));
+                let reason = format!("at no speed does {} keep {}{rest}", owner(joint, limit), limited(joint, limit));
                 self.at(place, Code::InfeasiblePoint, reason, "this is proved: lead the path elsewhere, or raise the limit")
             }
             TimingFault::InfeasibleSpeed { joint, limit, speed, needed, proved } => {
                 let reason = if needed.is_finite() {
                     format!(
-                        "ds is {} here, and at most {} is possible: joint `{}` is limited in {}",
+                        "ds is {} here, and at most {} is possible: {} is limited in {}",
                         short(needed),
                         short(speed),
-                        self.name(joint),
+                        owner(joint, limit),
                         limited(joint, limit)
                     )
                 } else {
-                    format!("the motion gets no farther: joint `{}` is limited in {}", self.name(joint), limited(joint, limit))
+                    format!("the motion gets no farther: {} is limited in {}", owner(joint, limit), limited(joint, limit))
                 };
                 let known = if proved { "this is proved" } else { "no motion was found, which is not proved" };
                 let help = if needed.is_finite() {
@@ -315,7 +326,7 @@ impl Faults<'_> {
             }
             TimingFault::EndNotHeld { joint, torque, limit } => {
                 let reason = format!(
-                    "at rest at the end joint `{}` needs {} and has {}",
+                    "at rest joint `{}` needs {} and has {}",
                     self.name(joint),
                     self.torque(joint, torque),
                     self.torque(joint, limit)
@@ -364,8 +375,14 @@ impl Faults<'_> {
             let i = profiles.partition_point(|profile| profile.start <= s).saturating_sub(1);
             timing.at(i, (s - profiles[i].start) / profiles[i].length).map_or(0.0, |at| at.ds)
         };
+        // Where the path stops or has a share of its speeds, it shall be slow.
+        let is_asked = |s: f64| {
+            let beside = path.pieces().iter().filter(|piece| piece.start <= s + nearby && piece.end() >= s - nearby);
+            beside.into_iter().any(|piece| piece.speed < 1.0 || piece.stop && (piece.start - s).abs() <= nearby)
+        };
         let around = |s: f64| ds(s - nearby).min(ds(s + nearby)).powi(2);
-        let is_slow = |(s, x): (f64, f64)| s - nearby > first.start && s + nearby < last.end() && x < SLOW * around(s);
+        let is_slow =
+            |(s, x): (f64, f64)| s - nearby > first.start && s + nearby < last.end() && x < SLOW * around(s) && !is_asked(s);
         let mut slowest: Option<(f64, f64)> = None;
         for (i, node) in nodes.iter().enumerate() {
             if is_slow(*node) && slowest.is_none_or(|(_, x)| node.1 < x) {

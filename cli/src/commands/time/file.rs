@@ -29,9 +29,25 @@ pub(super) enum Curve {
 #[derive(Clone, Debug)]
 pub(super) enum Form {
     /// Points, a list of joints for each. `arcs`: between each point and the next a line, or an arc of the tip.
-    Points { points: Vec<Vec<f64>>, arcs: Vec<Option<Arc>>, places: Vec<Place>, curve: Curve, blend: Option<f64> },
+    Points {
+        points: Vec<Vec<f64>>,
+        passing: Vec<Passing>,
+        arcs: Vec<Option<Arc>>,
+        places: Vec<Place>,
+        curve: Curve,
+        blend: Option<f64>,
+    },
     /// Polynomials, `[piece][joint][power]`, powers of s - knot, lowest first.
     Pieces { knots: Vec<f64>, coefficients: Vec<Vec<Vec<f64>>>, places: Vec<Place> },
+}
+
+/// How the motion passes a point.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Passing {
+    /// At most this share of each limit of speed, halfway to the points beside it.
+    pub(super) speed: f64,
+    /// It rests there.
+    pub(super) stop: bool,
 }
 
 /// Where a point or a piece stands in the file, and its entry for each joint.
@@ -55,6 +71,8 @@ pub(super) struct Limits {
     pub(super) acceleration: Vec<f64>,
     /// Lower and upper.
     pub(super) effort: Vec<[f64; 2]>,
+    /// Speed and turn rate of the end effector.
+    pub(super) tool: [f64; 2],
 }
 
 /// A path of the end effector: [`Form::Points`] has its poses, six numbers each.
@@ -100,13 +118,15 @@ const TIP: [Key; 3] = [
     required("start", "start: [0, 0.5]"),
     optional("tolerance"),
 ];
-const ARC: [Key; 2] = [required("via", "via: [0.5, 0.1, 0.3]"), required("to", "to: [0.5, 0.2, 0.3]")];
+const POINT: [Key; 3] = [required("q", "q: [0, 0.5]"), optional("speed"), optional("stop")];
+const TIP_POINT: [Key; 4] = [optional("via"), required("to", "to: [0.5, 0.2, 0.3]"), optional("speed"), optional("stop")];
 /// Of the tip, m and rad.
 const TOLERANCE: f64 = 1e-4;
-const LIMITS: [Key; 3] = [optional("velocity"), optional("acceleration"), optional("effort")];
+const LIMITS: [Key; 4] = [optional("velocity"), optional("acceleration"), optional("effort"), optional("tool")];
+const TOOL: [Key; 2] = [optional("speed"), optional("turn_rate")];
 const ENDS: [Key; 2] = [optional("speed"), optional("hold")];
 const NUMBER: &str = "write for instance `0.5`, `1e-3`, `pi/2` or `deg(30)`";
-const UNTREATED: &str = "limits of jerk and of the tool are not treated: keys here are velocity, acceleration, effort";
+const UNTREATED: &str = "limits of jerk are not treated: keys here are velocity, acceleration, effort, tool";
 
 impl Limits {
     /// Those of a description.
@@ -118,6 +138,7 @@ impl Limits {
             velocity: all(&|limits| limits.velocity.clone()),
             acceleration: all(&|limits| limits.acceleration.clone()),
             effort: all(&|limits| limits.effort.clone()).into_iter().map(|x| [-x, x]).collect(),
+            tool: [f64::INFINITY; 2],
         }
     }
 }
@@ -126,9 +147,12 @@ impl Limits {
 pub(super) fn read(source: &Source, arm: &Manipulator, path: bool) -> (Option<File>, Diagnostics) {
     let mut diagnostics = Diagnostics::new();
     let root = yaml::read(source, &mut diagnostics);
-    let reader = Reader::new(&mut diagnostics)
-        .with_other_places(&[("jerk", "velocity", UNTREATED), ("tool", "velocity", UNTREATED)])
-        .with_other_names(&[("path", "pieces"), ("waypoints", "points"), ("torque", "effort"), ("speed", "velocity")]);
+    let reader = Reader::new(&mut diagnostics).with_other_places(&[("jerk", "velocity", UNTREATED)]).with_other_names(&[
+        ("path", "pieces"),
+        ("waypoints", "points"),
+        ("torque", "effort"),
+        ("speed", "velocity"),
+    ]);
     let mut reader = Reading { reader, arm };
     let begin = "write for instance `points: [[0, 0.5], [1, -0.5]]`";
     let mut file = None;
@@ -164,7 +188,14 @@ impl Reading<'_> {
         // Squares of limits are numbers.
         let size = f64::EPSILON.powi(2);
         let effort = limits.effort.iter().flatten().map(|limit| limit.abs());
-        let mut all = limits.velocity.iter().chain(&limits.acceleration).copied().chain(effort).filter(|limit| limit.is_finite());
+        let mut all = limits
+            .velocity
+            .iter()
+            .chain(&limits.acceleration)
+            .chain(&limits.tool)
+            .copied()
+            .chain(effort)
+            .filter(|limit| limit.is_finite());
         if all.any(|limit| limit > 0.0 && !(size..=1.0 / size).contains(&limit)) {
             let help = "write it in rad/s, m/s, rad/s², m/s², N m or N";
             let message = "a limit is far too small or far too large to calculate with";
@@ -192,6 +223,14 @@ impl Reading<'_> {
             }
         }
         let (form, tip) = self.form(fields, path).map_or((None, None), |(form, tip)| (Some(form), tip));
+        if let Some(Form::Points { passing, places, .. }) = &form {
+            let is_free = limits.velocity.iter().chain(&limits.tool).all(|limit| limit.is_infinite());
+            for (i, _) in passing.iter().enumerate().filter(|(_, of)| is_free && of.speed < 1.0) {
+                let message = format!("point {} has a share of the limits of speed, and there are none", i + 1);
+                let help = "write for instance `limits: {velocity: [...]}`, here or in the description";
+                self.reader.report(Code::MissingLimit, places[i].span, message, "", help);
+            }
+        }
         File { form, tip, limits, speed, hold, limits_at: fields.place("limits"), ends_at: fields.place("ends") }
     }
 
@@ -269,15 +308,16 @@ impl Reading<'_> {
             Kind::List(items) if items.len() == 6 => 6,
             _ => 3,
         };
-        let (mut points, mut places, mut vias) = (Vec::new(), Vec::new(), Vec::new());
+        let (mut points, mut places, mut vias, mut passing) = (Vec::new(), Vec::new(), Vec::new(), Vec::new());
         let mut complete = true;
         for (i, point) in list.iter().enumerate() {
             let name = format!("point {}", i + 1);
-            let Some((point, via)) = (if of_tip { self.arc(point, curve, i == 0) } else { Some((point, None)) }) else {
+            let Some((point, via, how)) = self.point(point, curve, (i, list.len()), of_tip) else {
                 complete = false;
                 continue;
             };
             vias.push(via);
+            passing.push(how);
             let length = length(point);
             match self.numbers(point, point.span, &name, Some((length, each))) {
                 Some(mut q) if of_tip => {
@@ -316,23 +356,53 @@ impl Reading<'_> {
                 self.reader.report(Code::ZeroLength, places[i].span, message, "the same point", help);
             }
         }
-        Some(Form::Points { points, arcs, places, curve, blend })
+        Some(Form::Points { points, passing, arcs, places, curve, blend })
     }
 
-    /// The end of an arc, and the position that it passes; or the point itself.
-    fn arc<'n>(&mut self, point: &'n Node, curve: Curve, is_first: bool) -> Option<(&'n Node, Option<[f64; 3]>)> {
-        let Kind::Mapping(_) = &point.kind else { return Some((point, None)) };
-        let fields = self.reader.mapping(point, "an arc", point.span, &ARC)?;
-        if is_first {
-            let help = "write the point where the arc begins before it";
-            self.reader.report(Code::MissingPath, point.span, "a path begins with a point, not with an arc", "", help);
+    /// The numbers of point `i` of `count`, the position that an arc to it passes, and how the motion passes the point.
+    fn point<'n>(
+        &mut self,
+        point: &'n Node,
+        curve: Curve,
+        (i, count): (usize, usize),
+        of_tip: bool,
+    ) -> Option<(&'n Node, Option<[f64; 3]>, Passing)> {
+        let mut how = Passing { speed: 1.0, stop: false };
+        let Kind::Mapping(_) = &point.kind else { return Some((point, None, how)) };
+        let keys = if of_tip { &TIP_POINT[..] } else { &POINT };
+        let fields = self.reader.mapping(point, "a point", point.span, keys)?;
+        if let Some((key, node)) = fields.get("speed") {
+            how.speed = self.number(node, key, "speed")?;
+            if !(how.speed > f64::EPSILON && how.speed <= 1.0) {
+                let message = format!("the speed of point {} is no share of the limits of speed", i + 1);
+                let help = "write how much of each limit of speed is allowed near the point, above 0 and at most 1: `speed: 0.2`";
+                self.reader.report(Code::NotPositive, node.span, message, "", help);
+            }
         }
-        if curve != Curve::Lines {
-            self.reader.report(Code::UnknownWord, point.span, "only `curve: lines` has arcs", "", "write `curve: lines`");
+        if let Some((key, node)) = fields.get("stop") {
+            let help = "`stop: true` brings the arm to rest at the point";
+            let chosen = self.reader.choice(node, key, "stop", &[("true", true), ("false", false)], Code::UnknownWord, help);
+            how.stop = chosen.is_some_and(|chosen| chosen.value);
+            if how.stop && (i == 0 || i + 1 == count) {
+                let help = "leave it out: a path begins and ends at rest, unless `ends: {speed: ...}` tells otherwise";
+                self.reader.report(Code::UnknownWord, key, "a path stops between its first and its last point", "", help);
+            }
         }
-        let via = fields.get("via").and_then(|(key, node)| self.numbers(node, key, "via", Some((3, "x, y, z in m"))));
-        let (_, to) = fields.get("to")?;
-        Some((to, Some(via?.try_into().ok()?)))
+        let via = match fields.get("via") {
+            None => None,
+            Some((key, node)) => {
+                if i == 0 {
+                    let help = "write the point where the arc begins before it";
+                    self.reader.report(Code::MissingPath, point.span, "a path begins with a point, not with an arc", "", help);
+                }
+                if curve != Curve::Lines {
+                    self.reader.report(Code::UnknownWord, point.span, "only `curve: lines` has arcs", "", "write `curve: lines`");
+                }
+                Some(self.numbers(node, key, "via", Some((3, "x, y, z in m")))?.try_into().ok()?)
+            }
+        };
+        let (_, numbers) = fields.get(if of_tip { "to" } else { "q" })?;
+        Some((numbers, via, how))
     }
 
     fn pieces(&mut self, node: &Node, key: Span) -> Option<Form> {
@@ -390,6 +460,9 @@ impl Reading<'_> {
 
     fn limits(&mut self, node: &Node, key: Span, limits: &mut Limits) {
         let Some(fields) = self.reader.mapping(node, "`limits`", key, &LIMITS) else { return };
+        if let Some((key, node)) = fields.get("tool") {
+            self.tool(node, key, &mut limits.tool);
+        }
         for name in ["velocity", "acceleration", "effort"] {
             let Some((key, node)) = fields.get(name) else { continue };
             for (joint, node) in self.by_joint(node, key, name) {
@@ -416,6 +489,25 @@ impl Reading<'_> {
                     _ => limits.effort[joint] = [-limit, limit],
                 }
             }
+        }
+    }
+
+    /// Limits of the end effector.
+    fn tool(&mut self, node: &Node, key: Span, limits: &mut [f64; 2]) {
+        let Some(fields) = self.reader.mapping(node, "`tool`", key, &TOOL) else { return };
+        if !self.arm.tips.is_empty() {
+            let help = "limit its joints: `limits: {velocity: [...]}`";
+            self.reader.report(Code::UnknownWord, key, "the arm has several end effectors: `tool` names none", "", help);
+        }
+        for (limit, name) in limits.iter_mut().zip(["speed", "turn_rate"]) {
+            let Some((key, node)) = fields.get(name) else { continue };
+            let Some(value) = self.number(node, key, name) else { continue };
+            if value <= 0.0 {
+                let help =
+                    "write the largest length of the velocity in m/s, `speed`, or of the angular velocity in rad/s, `turn_rate`";
+                self.reader.report(Code::NotPositive, node.span, format!("`{name}` of the tool is not above zero"), "", help);
+            }
+            *limit = value;
         }
     }
 

@@ -35,6 +35,12 @@ struct Largest {
     share: [f64; 3],
 }
 
+/// Largest values of all joints, and speed and turn rate of the end effector.
+struct AllLargest {
+    joints: Vec<Largest>,
+    tool: [f64; 2],
+}
+
 /// A limit that binds, for how long, and when for the first time.
 struct Binding {
     name: String,
@@ -76,9 +82,10 @@ fn end_of<const N: usize>(timing: &Timing<'_, f64, N>, segment: usize) -> f64 {
 }
 
 /// The largest values at places of all segments, by the torques of the arm itself.
-fn largest<const N: usize>(job: &Job<'_>, arm: &Arm<N>, path: &Curve<N>, timing: &Timing<'_, f64, N>) -> Vec<Largest> {
+fn largest<const N: usize>(job: &Job<'_>, arm: &Arm<N>, path: &Curve<N>, timing: &Timing<'_, f64, N>) -> AllLargest {
     let limits = &job.file.limits;
     let mut largest = vec![Largest::default(); job.manipulator.dof()];
+    let mut tool = [0.0f64; 2];
     for segment in 0..timing.segments() {
         for place in 0..=PLACES {
             // At an end itself the sign of a rate may be that of the neighbour.
@@ -86,6 +93,9 @@ fn largest<const N: usize>(job: &Job<'_>, arm: &Arm<N>, path: &Curve<N>, timing:
             let Some(progress) = timing.at(segment, t) else { continue };
             let at = timing.reference(&progress);
             let tau = arm.torque(&at.q, &at.dq, &at.ddq, &slope(path, progress.s));
+            for (most, speed) in tool.iter_mut().zip(arm.tool_speeds(&at.q, &at.dq)) {
+                *most = most.max(speed);
+            }
             for (joint, largest) in largest.iter_mut().enumerate() {
                 let [low, high] = limits.effort[joint];
                 let values = [
@@ -100,7 +110,7 @@ fn largest<const N: usize>(job: &Job<'_>, arm: &Arm<N>, path: &Curve<N>, timing:
             }
         }
     }
-    largest
+    AllLargest { joints: largest, tool }
 }
 
 /// q' at s.
@@ -118,7 +128,10 @@ fn bindings<const N: usize>(job: &Job<'_>, timing: &Timing<'_, f64, N>) -> Vec<B
             continue;
         }
         let seconds = end_of(timing, i) - own.time;
-        let name = format!("{} {}", job.joint(joint), quantity(limit));
+        let name = match limit {
+            Limit::ToolSpeed | Limit::ToolTurnRate => limit.name().to_owned(),
+            _ => format!("{} {}", job.joint(joint), quantity(limit)),
+        };
         match all.iter_mut().find(|of| of.name == name) {
             Some(of) => of.seconds += seconds,
             None => all.push(Binding { name, seconds, first: own.time }),
@@ -132,7 +145,8 @@ fn quantity(limit: Limit) -> &'static str {
     match limit {
         Limit::EffortHigh | Limit::EffortLow => "torque",
         Limit::AccelerationHigh | Limit::AccelerationLow => "acceleration",
-        Limit::Velocity => "speed",
+        Limit::Velocity | Limit::ToolSpeed => "speed",
+        Limit::ToolTurnRate => "turn rate",
     }
 }
 
@@ -140,7 +154,7 @@ fn text<const N: usize>(
     job: &Job<'_>,
     path: &Curve<N>,
     timing: &Timing<'_, f64, N>,
-    largest: &[Largest],
+    largest: &AllLargest,
     bindings: &[Binding],
 ) -> String {
     use Align::{Left, Right};
@@ -174,7 +188,7 @@ fn text<const N: usize>(
         ("torque", Right),
         ("of limit", Right),
     ]);
-    for (joint, of) in largest.iter().enumerate() {
+    for (joint, of) in largest.joints.iter().enumerate() {
         let units = if job.slides(joint) { ["m/s", "m/s²", "N"] } else { ["rad/s", "rad/s²", "N m"] };
         let mut cells = vec![job.joint(joint).to_owned()];
         for (k, unit) in units.into_iter().enumerate() {
@@ -184,6 +198,14 @@ fn text<const N: usize>(
         joints.row(cells);
     }
     text += &format!("\n{}", joints.text());
+    let mut tool = Table::new([("end effector", Left), ("largest", Right), ("of limit", Right)]);
+    let rows = ["speed", "turn rate"].into_iter().zip(["m/s", "rad/s"]).zip(largest.tool.iter().zip(job.file.limits.tool));
+    for ((name, unit), (value, limit)) in rows.filter(|(_, (_, limit))| limit.is_finite()) {
+        tool.row([name.to_owned(), format!("{} {unit}", four(*value)), format!("{:.1} %", 100.0 * value / limit)]);
+    }
+    if job.file.limits.tool.iter().any(|limit| limit.is_finite()) {
+        text += &format!("\n{}", tool.text());
+    }
     let mut table = Table::new([("at its limit", Left), ("of the time", Right), ("first at", Right)]);
     let share = |seconds: f64| format!("{:.1} %", 100.0 * seconds / timing.seconds());
     for of in bindings {
@@ -284,7 +306,7 @@ fn json<const N: usize>(
     job: &Job<'_>,
     path: &Curve<N>,
     timing: &Timing<'_, f64, N>,
-    largest: &[Largest],
+    largest: &AllLargest,
     bindings: &[Binding],
 ) -> Vec<(&'static str, Value)> {
     let pieces = path.pieces();
@@ -300,8 +322,11 @@ fn json<const N: usize>(
     let barriers: Vec<Option<UpperBound<f64>>> = (0..timing.segments()).map(|i| timing.upper_bound(i)).collect();
     let of_barrier =
         |of: &dyn Fn(&UpperBound<f64>) -> Value| barriers.iter().map(|b| b.as_ref().map_or(Value::Null, of)).collect::<Vec<_>>();
-    let row = |b: &UpperBound<f64>| format!("{} {}", job.joint(b.joint), b.limit.name());
-    let shares = |k: usize| largest.iter().map(|of| of.share[k]).collect::<Vec<_>>();
+    let row = |b: &UpperBound<f64>| match b.limit {
+        Limit::ToolSpeed | Limit::ToolTurnRate => b.limit.name().to_owned(),
+        limit => format!("{} {}", job.joint(b.joint), limit.name()),
+    };
+    let shares = |k: usize| largest.joints.iter().map(|of| of.share[k]).collect::<Vec<_>>();
     let limits = &job.file.limits;
     let finite = |x: f64| if x.is_finite() { json!(x) } else { Value::Null };
     let all = |of: &[f64]| of.iter().map(|x| finite(*x)).collect::<Vec<_>>();
@@ -312,7 +337,15 @@ fn json<const N: usize>(
         ("duration", json!(timing.duration().as_secs_f64())),
         ("lower_bound", json!(timing.lower_bound())),
         ("gap", json!(timing.gap())),
-        ("path", json!({"knots": knots, "coefficients": pieces.iter().map(of_piece).collect::<Vec<_>>()})),
+        (
+            "path",
+            json!({
+                "knots": knots,
+                "coefficients": pieces.iter().map(of_piece).collect::<Vec<_>>(),
+                "speed": pieces.iter().map(|piece| piece.speed).collect::<Vec<_>>(),
+                "stops": pieces.iter().filter(|piece| piece.stop).map(|piece| piece.start).collect::<Vec<_>>(),
+            }),
+        ),
         ("ends", json!({"speed": job.file.speed, "hold": job.file.hold})),
         (
             "limits",
@@ -320,9 +353,18 @@ fn json<const N: usize>(
                 "velocity": all(&limits.velocity),
                 "acceleration": all(&limits.acceleration),
                 "effort": limits.effort.iter().map(|both| all(both)).collect::<Vec<_>>(),
+                "tool": all(&limits.tool),
             }),
         ),
-        ("margins", json!({"velocity": shares(0), "acceleration": shares(1), "effort": shares(2)})),
+        (
+            "margins",
+            json!({
+                "velocity": shares(0),
+                "acceleration": shares(1),
+                "effort": shares(2),
+                "tool": largest.tool.iter().zip(limits.tool).map(|(value, limit)| value / limit).collect::<Vec<_>>(),
+            }),
+        ),
         ("binding", bindings.iter().map(|of| json!({"limit": of.name, "seconds": of.seconds})).collect()),
         (
             "grid",

@@ -267,7 +267,7 @@ impl Way<'_> {
             let next = self.follow(from, &q, to, 0).map_err(|fault| self.judged(fault, &q, to))?;
             let next_slope = self.slope(to, &next)?;
             let h = to - from;
-            let mut piece = Piece { start: from, length: h, coefficients: [SVector::zeros(); 6] };
+            let mut piece = Piece::new(from, h, [SVector::zeros(); 6]);
             for joint in 0..self.arm.dof {
                 let (a, b, va, vb) = (q[joint], next[joint], slope[joint], next_slope[joint]);
                 let powers = [a, va, (3.0 * (b - a) / h - 2.0 * va - vb) / h, (va + vb - 2.0 * (b - a) / h) / (h * h)];
@@ -335,7 +335,8 @@ pub(super) fn spline<const N: usize>(
         worst.metres = worst.metres.max(off.metres);
         worst.radians = worst.radians.max(off.radians);
         let origin: Origin = *origin;
-        pieces.extend(found.into_iter().map(|piece| (piece, origin)));
+        let pieces_of = found.into_iter().enumerate();
+        pieces.extend(pieces_of.map(|(i, piece)| (Piece { stop: i == 0 && of.stop, ..piece }, origin)));
         q = end;
     }
     Ok((pieces, worst))

@@ -7,7 +7,7 @@ use super::{armgen, err, own_folder, CRANE, PENDULUM, PLANAR, SLIDE};
 /// Numbers, then words, that a change writes into a file.
 const WORDS: [&str; 2] = [
     ".nan|.inf|-.inf|1e308|-1e308|5e-324|1e-160|1e160|-0|0|1|-1|1e-9|1e9|pi/2|deg(30)|1/0",
-    "[]|{}|~|null|true|points|pieces|tip|curve|lines|through|limits|ends|speed|hold|\n  - [1, 2]\n|, ",
+    "[]|{}|~|null|true|points|pieces|tip|curve|lines|through|limits|ends|speed|hold|tool|stop|q|\n  - [1, 2]\n|, ",
 ];
 
 /// One or two changes of a text: a digit, a strange number, a part less, a part twice, a word, a byte.
@@ -44,6 +44,7 @@ fn changed_paths_are_timed_or_refused() {
         (PENDULUM, "points: [[0], [1], [2]]\ncurve: through\nends: {speed: [0, 1], hold: false}\n"),
         (CRANE, "points: [[0, 0], [1, 1], [2, 0]]\ncurve: lines\nblend: 0.05\nlimits: {effort: {lift: [-10, 50]}}\n"),
         (PLANAR, "tip: {points: [[1.5, 0.8, 0], {via: [1.3, 1.02, 0], to: [1, 1.2, 0]}], start: [0, 1], tolerance: 1e-3}\ncurve: lines\n"),
+        (CRANE, "points: [[0, 0], {q: [1, 1], stop: true}, {q: [2, 0], speed: 0.3}, [1, 1]]\ncurve: lines\nblend: 0.1\nlimits: {tool: {speed: 1.5}}\n"),
     ];
     let mut state = 7u64;
     let mut random = move |below: usize| {

@@ -94,6 +94,43 @@ fn faults() -> Vec<(&'static str, String, String, Vec<&'static str>, Vec<&'stati
             "",
             vec!["between points 1 and 2", "raise `tolerance`"],
         ),
+        // Of points that are passed in another way.
+        (
+            "limit-not-positive",
+            of(SLIDE, "points: [[0], {q: [1], speed: 1.5}, [2]]\n"),
+            "",
+            vec!["the speed of point 2 is no share", "path.yaml:1:31", "`speed: 0.2`"],
+        ),
+        (
+            "missing-limit",
+            of(&SLIDE.replace("velocity: 3, ", ""), "points: [[0], {q: [1], speed: 0.5}, [2]]\n"),
+            "",
+            vec!["point 2 has a share of the limits of speed, and there are none", "path.yaml:1:19"],
+        ),
+        (
+            "unknown-word",
+            of(SLIDE, "points: [{q: [0], stop: true}, [1]]\n"),
+            "",
+            vec!["a path stops between its first and its last point", "path.yaml:1:19", "leave it out"],
+        ),
+        (
+            "unknown-key",
+            of(SLIDE, "points: [[0], {q: [1], sped: 0.5}, [2]]\n"),
+            "",
+            vec!["did you mean `speed`", "path.yaml:1:24"],
+        ),
+        (
+            "limit-not-positive",
+            of(SLIDE, "points: [[0], [1]]\nlimits: {tool: {speed: 0}}\n"),
+            "",
+            vec!["`speed` of the tool is not above zero", "path.yaml:2:24"],
+        ),
+        (
+            "infeasible-speed",
+            of(SLIDE, "points: [[0], [1]]\nlimits: {tool: {speed: 1}}\nends: {speed: [2, 0]}\n"),
+            "",
+            vec!["at s = 0, point 1", "the end effector is limited in its speed, at most 1 m/s", "proved"],
+        ),
         // Of arcs.
         (
             "no-circle",

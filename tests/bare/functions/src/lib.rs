@@ -1,6 +1,9 @@
 //! Emitted modules in f32, each with `--trig fast` and with `--trig libm`, and calls of all their functions at a few states; inverse kinematics; steps of the runtime.
 #![no_std]
 
+pub use armgen_runtime::timing::{Governor, Node, Segment};
+
+pub mod laws;
 pub mod postures;
 pub mod steps;
 

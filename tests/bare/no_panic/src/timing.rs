@@ -6,7 +6,7 @@ use armgen_runtime::{
     robot::Dynamics,
     timing::{
         time_optimal, Command, Ends, Governor, JointFriction, JointPath, Limit, Limits, LinkBound, Node, PathDynamics, PathModel,
-        Piece, Segment, Timing, Workspace,
+        Piece, Segment, Timing, ToolLimit, Workspace,
     },
 };
 use core::{hint::black_box, time::Duration};
@@ -37,6 +37,7 @@ pub(crate) fn every_timing<R: Dynamics<N>, const N: usize>(robot: &R) {
     let point = PathDynamics::path_dynamics(&model, &vector(), &vector(), &vector());
     keep((
         point,
+        PathDynamics::tool_rate(&model, &vector(), &vector()),
         *PathDynamics::joint_friction(&model),
         *PathDynamics::link_bounds(&model),
         PathDynamics::gravity_length(&model),
@@ -48,11 +49,14 @@ pub(crate) fn every_timing<R: Dynamics<N>, const N: usize>(robot: &R) {
         Piece::extremes(&piece, black_box(1)),
         Piece::reversed(&piece, number()),
     ));
+    let piece = black_box(Piece { speed: number(), ..Piece::new(piece.start, piece.length, piece.coefficients) });
     let Ok(path) = JointPath::new([piece; 2]) else { return };
     keep(JointPath::pieces(&path).len());
     let Ok(limits) = Limits::velocity(numbers()) else { return };
     let Ok(limits) = Limits::with_acceleration(limits, numbers()) else { return };
     let Ok(limits) = Limits::with_effort(limits, numbers(), numbers()) else { return };
+    let tool = ToolLimit { speed: number(), turn_rate: number(), joint: black_box(3), distance: number() };
+    let Ok(limits) = Limits::with_tool(limits, tool) else { return };
     let (mut nodes, mut segments) = ([Node::empty(); 42], [Segment::empty(); 24]);
     let work = Workspace { nodes: black_box(&mut nodes[..]), segments: black_box(&mut segments[..]) };
     let ends = Ends { speed: numbers(), ..black_box(Ends::at_rest()) };

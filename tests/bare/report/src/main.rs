@@ -15,7 +15,7 @@ mod page;
 mod printed;
 
 use armgen_bare_control::{Cell, Fault, Line, PERIOD, STEPS};
-use armgen_bare_functions::postures;
+use armgen_bare_functions::{laws, postures};
 use budgets::{Budgets, Measured};
 use image::Image;
 use printed::Printed;
@@ -66,9 +66,10 @@ fn run() -> Result<Vec<String>, String> {
     let on_m7 = budgets::functions(&m7_image, &m7)?;
     let host = host().map_err(|fault| format!("the run ended early on this machine: {fault:?}"))?;
     faults.extend(printed::differences(&host, &printed.torques));
-    let postures = host_postures();
+    let (postures, laws) = (host_postures(), host_laws()?);
     for target in [&m4f, &m7] {
         faults.extend(printed::differences(&postures, &target.postures));
+        faults.extend(printed::differences(&laws, &target.laws));
     }
     faults.extend(budgets.exceeded(&measured));
     let page_text = page::page(&measured, &on_m7, &budgets, &printed, postures.len());
@@ -91,6 +92,17 @@ fn host_postures() -> Vec<String> {
         debug_assert!(added.is_ok(), "a list takes everything");
     }
     lines
+}
+
+/// Those of all laws, computed on this machine.
+fn host_laws() -> Result<Vec<String>, String> {
+    let mut lines = Vec::new();
+    laws::each_line(&mut |line| {
+        lines.push(line.to_string());
+        Ok(())
+    })
+    .map_err(|_| "a law has no result on this machine".to_string())?;
+    Ok(lines)
 }
 
 /// The torques of each step, computed on this machine.

@@ -8,9 +8,10 @@ use std::fmt::Write;
 
 const PREFACE: &str = include_str!("preface.md");
 const FUNCTIONS: &str = include_str!("functions.md");
-/// The module of inverse kinematics, and that of steps of the runtime.
+/// The module of inverse kinematics, that of steps of the runtime, and that of motion at the limit.
 const POSTURES: &str = "postures";
 const STEPS: &str = "steps";
+const LAWS: &str = "laws";
 const PARTS: [&str; 4] =
     ["trajectory", "inverse kinematics, second order", "adaptive controller", "the arm itself, one step of its simulation"];
 
@@ -82,6 +83,7 @@ pub(crate) fn page(measured: &Measured, m7: &Modules, budgets: &Budgets, printed
         Steps of the Panda in f32, with the emitted functions that they call. `payload_step` contains `payload_regressors`.\n\
         `payload_body` takes Newton steps, at most twelve, and runs when a body is wanted.\n";
     page += &functions_of(STEPS, &costs.functions, m7, budgets);
+    page += &laws(&costs.functions, m7, budgets);
     page
 }
 
@@ -114,6 +116,20 @@ fn inverse_kinematics(m4f: &Modules, m7: &Modules, budgets: &Budgets, postures: 
         armgen_bare_functions::postures::POSES,
     );
     text += &functions_of(POSTURES, m4f, m7, budgets);
+    text
+}
+
+fn laws(m4f: &Modules, m7: &Modules, budgets: &Budgets) -> String {
+    use armgen_bare_functions::laws::{SAMPLES, SEGMENTS};
+    let mut text = format!(
+        "\n## Motion at the limit\n\n\
+         `timing` finds the [fastest motion](timing.md) of the SCARA on a line with {SEGMENTS} segments.\n\
+         `governor_step` leads it at 250 Hz, with another command every 40 of {SAMPLES} samples.\n\
+         `rate_program` is a quadratic program of 7 unknowns and 14 bounds. The other rows are steps of the Panda:\n\
+         impedance, guiding by hand, torques within limits (`control::Limited`) and joint rates within limits (`clik::Limited`).\n\
+         Durations, laws, references, torques and rates are the same on both processors and the host, bit by bit.\n",
+    );
+    text += &functions_of(LAWS, m4f, m7, budgets);
     text
 }
 

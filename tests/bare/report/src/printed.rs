@@ -19,6 +19,8 @@ pub(crate) struct Printed {
     pub(crate) torques: Vec<String>,
     /// Whole lines, one for each posture.
     pub(crate) postures: Vec<String>,
+    /// Whole lines, one for each result of a law.
+    pub(crate) laws: Vec<String>,
     /// Ticks of trajectory, inverse kinematics, controller and arm, by step.
     pub(crate) ticks: Vec<[u64; 4]>,
     /// Largest difference of desired and actual joint variables, 1e-9 rad or m.
@@ -38,6 +40,7 @@ impl Printed {
             match kind {
                 "torque" => printed.torques.push(line.into()),
                 "posture" => printed.postures.push(line.into()),
+                "bits" => printed.laws.push(line.into()),
                 "calibration" => printed.calibration.push(numbers(rest)?.try_into().map_err(|_| wrong())?),
                 "ticks" => {
                     let [_, ticks @ ..]: [u64; 5] = numbers(rest)?.try_into().map_err(|_| wrong())?;
