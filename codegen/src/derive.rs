@@ -33,7 +33,10 @@ use parameters::ParameterVector;
 pub fn parameter_vector(manipulator: &Manipulator, field: &Field) -> ParameterVector {
     match &manipulator.regressor {
         RegressorChoice::Standard => ParameterVector::standard(manipulator),
-        RegressorChoice::Base => base::base_parameters(manipulator, field),
+        // Validation refuses a description whose base parameters are too long.
+        RegressorChoice::Base => {
+            base::base_parameters(manipulator, field).unwrap_or_else(|| ParameterVector::standard(manipulator))
+        }
         RegressorChoice::Names(names) => ParameterVector::named(manipulator, names),
     }
 }

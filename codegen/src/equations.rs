@@ -3,6 +3,7 @@
 //! - tau is not linear in the names that `regressor` lists together (for instance a length, or both a mass and its centre of
 //!   mass): second derivatives of tau.
 //! - No joint moves any row of the task that the file writes: rows of the Jacobian that are identically zero.
+//! - The base parameters, where `regressor` asks for them, are too long to be formed.
 //! - The inertia matrix B(q) is singular for every q (for instance a massless last link without inertia): pivots of an elimination.
 //! - Two links do not share a point that `closes` names, in every posture (`closures`).
 //!
@@ -13,6 +14,7 @@ mod closures;
 use std::ops::Range;
 
 use crate::derive::arm::Arm;
+use crate::derive::base;
 use crate::derive::constants::find_field;
 use crate::derive::motion::Motion;
 use crate::derive::newton_euler::inverse_dynamics;
@@ -79,6 +81,9 @@ fn check(manipulator: &Manipulator, places: &Places, diagnostics: &mut Diagnosti
         found.push(Some(no_dynamics(places)));
         found.into_iter().flatten().for_each(|diagnostic| diagnostics.push(diagnostic));
         return;
+    }
+    if manipulator.regressor == RegressorChoice::Base && base::base_parameters(manipulator, &field).is_none() {
+        found.push(Some(long_combinations(places)));
     }
     let b = inertia::inertia_matrix(&mut pool, &arm, &mut Plan::default());
     let b = arm.project_matrix(&mut pool, b);
@@ -208,6 +213,14 @@ fn immovable_task(manipulator: &Manipulator, span: Span) -> Diagnostic {
     let message = format!("no joint moves any row of the task ({})", rows.join(", "));
     let help = "name rows that the arm can move: x y z are along, rx ry rz about the axes of the base frame";
     Diagnostic::new(Code::ImmovableTask, span, message, "zero for every q", help)
+}
+
+/// The base parameters, which `regressor` asks for, take too many steps.
+fn long_combinations(places: &Places) -> Diagnostic {
+    let message = "the base parameters of this arm are combinations that are too long to be formed exactly";
+    let help = "leave `regressor` out, for ten columns a link: `armgen check --full` counts how many combinations a motion can identify; \
+                angles that are multiples of pi/12 keep combinations short";
+    Diagnostic::new(Code::TooComplex, places.regressor.unwrap_or(places.name), message, "needs them", help)
 }
 
 /// Nothing in the arm has mass or inertia.

@@ -74,7 +74,7 @@ pub fn module(model: &Model, options: &Options) -> Module {
         tips: manipulator.tips.iter().map(|tip| end_effector(manipulator, tip)).collect(),
         parameters: model.parameters.entries.clone(),
         base_parameters: matches!(model.parameters.kind, ParameterKind::Base(_)),
-        base_set: if base { model.base_parameters().entries.clone() } else { Vec::new() },
+        base_set: if base { model.base_parameters().map_or_else(Vec::new, |vector| vector.entries.clone()) } else { Vec::new() },
         functions,
         absent,
         scalar: options.scalar,
@@ -157,7 +157,7 @@ fn function(model: &Model, quantity: &'static Quantity, with_parameters: bool, o
 }
 
 fn lower(model: &Model, quantity: &'static Quantity, with_parameters: bool, derivation: &Derivation) -> Function {
-    let base_parameters = if quantity.has_length(Length::BaseParameters) { model.base_parameters().len() } else { 0 };
+    let base_parameters = if quantity.has_length(Length::BaseParameters) { model.base_count() } else { 0 };
     let order = quantity.entries_by_columns(&model.sizes_with(base_parameters)).concat();
     let (steps, outputs) = steps(&derivation.pool, &derivation.entries, &order);
     let arguments = quantity.arguments_of(with_parameters, model.manipulator.gravity_is_argument).collect();

@@ -219,7 +219,7 @@ impl Arm {
             manipulator.joints.iter().filter_map(|joint| joint.motor.as_ref()).any(|motor| !motor.mass.is_zero());
         let wanted = if has_rotor_masses { vec!["regressor", "known_torque"] } else { vec!["regressor"] };
         let model = Model::new(manipulator);
-        let (vector, combinations) = base_combinations(&model.manipulator, &model.field);
+        let (vector, combinations) = base_combinations(&model.manipulator, &model.field)?;
         let dependent = apart::dependent_friction(&model, &vector);
         let combination = DMatrix::from_fn(vector.len(), names.len(), |row, column| combinations[row][column].to_f64());
         let functions = Selection::named(wanted).expect("functions of every arm with mass");

@@ -176,7 +176,7 @@ pub(crate) struct Function {
 impl Function {
     pub(crate) fn new(py: Python<'_>, robot: Arc<Robot>, index: usize, owner: Py<PyAny>) -> PyResult<Function> {
         let (quantity, with) = (robot.functions[index].quantity, robot.functions[index].with);
-        let base = if quantity.has_length(Length::BaseParameters) { robot.model.base_parameters().len() } else { 0 };
+        let base = if quantity.has_length(Length::BaseParameters) { robot.model.base_count() } else { 0 };
         let sizes = robot.model.sizes_with(base);
         let of_arm = quantity.arguments_of(with, robot.model.manipulator.gravity_is_argument);
         let arguments = of_arm.map(|argument| (argument.name(), argument.length().of(&sizes)));

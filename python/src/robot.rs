@@ -193,7 +193,7 @@ impl Arm {
     /// Names and nominal values of the base parameters.
     #[getter]
     fn base_parameters(&self, py: Python<'_>) -> PyResult<Parameters> {
-        guarded(py, || Ok(py.detach(|| table(&self.robot.model.base_parameters().entries))))
+        guarded(py, || Ok(py.detach(|| table(self.robot.model.base_parameters().map_or(&[][..], |vector| &vector.entries[..])))))
     }
 
     /// The text of the description.

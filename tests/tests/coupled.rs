@@ -187,7 +187,7 @@ fn base_parameters_of_coupled_arms_are_counted_exactly() {
         let text = lines.map(|line| format!("{line}\n")).collect::<String>();
         let (arm, _) = validate::read(&Source::new("robot.yaml", text)).0.expect("valid");
         let model = Model::new(arm);
-        let (vector, _) = base::base_combinations(&model.manipulator, &model.field);
+        let (vector, _) = base::base_combinations(&model.manipulator, &model.field).expect("short combinations");
         assert_eq!(vector.entries.len(), expected, "{name}");
     }
 }
@@ -434,7 +434,7 @@ fn the_checker_proves_base_parameters_of_related_angles() {
         assert!(report.passed(), "{factors:?}: {}", report.first_fault().unwrap_or_default());
         let (arm, _) = validate::read(&source).0.expect("valid");
         let model = Model::new(arm);
-        counts.push(base::base_combinations(&model.manipulator, &model.field).0.entries.len());
+        counts.push(base::base_combinations(&model.manipulator, &model.field).expect("short combinations").0.entries.len());
     }
     // With 1/2 and -3/2 the last bar keeps its direction. Seven of independent angles.
     assert_eq!(counts, [7, 5, 7, 7]);

@@ -248,7 +248,7 @@ fn a_module_of_other_motors_is_refused() {
 fn base_parameters_beside_coupled_motors_are_counted_exactly() {
     let (arm, _) = validate::read(&Source::new("robot.yaml", WRIST)).0.expect("valid");
     let model = Model::new(arm);
-    let (vector, _) = base::base_combinations(&model.manipulator, &model.field);
+    let (vector, _) = base::base_combinations(&model.manipulator, &model.field).expect("short combinations");
     let of_links = vector.entries.iter().filter(|entry| !["Im", "Fm"].iter().any(|of| entry.name.starts_with(of)));
     assert_eq!(of_links.count(), 36, "{:?}", vector.entries.iter().map(|entry| &entry.name).collect::<Vec<_>>());
 }

@@ -222,6 +222,11 @@ fn functions_are_chosen_by_their_full_names() {
         reason("direct_kinematics"),
         "each end effector has its own, left_hand_direct_kinematics, right_hand_direct_kinematics"
     );
+    assert_eq!(reason("LEFT_HAND_direct_kinematics"), "it is called left_hand_direct_kinematics");
+    let capital = text.replace("left_hand", "Left_Hand");
+    let functions = Selection::named(["Left_Hand_direct_kinematics"]).expect("a name that a function can have");
+    let capital = Interpreted::with_options(&capital, &Options { functions, ..Options::default() }).expect("valid").module;
+    assert_eq!(capital.absent[0].reason, "it is called left_hand_direct_kinematics");
     assert_eq!(reason("lefthand_direct_kinematics"), "the end effectors are left_hand, right_hand");
     assert!(Selection::named(["left_hand_gravity"]).is_err());
     let of_one = Interpreted::with_options(

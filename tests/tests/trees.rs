@@ -94,7 +94,8 @@ fn base_parameters_of_trees_are_counted_exactly() {
         let text = lines.map(|line| format!("{line}\n")).collect::<String>();
         let (arm, _) = validate::read(&Source::new("robot.yaml", text)).0.expect("valid");
         let model = Model::new(arm);
-        let (vector, _) = armgen_codegen::derive::base::base_combinations(&model.manipulator, &model.field);
+        let (vector, _) =
+            armgen_codegen::derive::base::base_combinations(&model.manipulator, &model.field).expect("short combinations");
         assert_eq!(vector.entries.len(), 43, "{:?}", vector.entries.iter().map(|entry| &entry.name).collect::<Vec<_>>());
     }
 }

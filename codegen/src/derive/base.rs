@@ -6,6 +6,9 @@
 //! changes the answer but for odds of 1/p; each row of K is then solved for exactly, over the exact constants, from rational states.
 //! Friction is grouped with nothing else, so that gravity and friction keep their own parameters.
 
+use std::cmp::Ordering;
+use std::collections::{BTreeMap, BTreeSet};
+
 use super::arm::{Arm, GroupingConvention};
 use super::motion::Motion;
 use super::parameters::{Inertial, Parameter, ParameterKind, ParameterVector, StandardParameter, View};
@@ -27,28 +30,51 @@ pub struct Dependence {
     pub independent: Vec<usize>,
     /// Each other column as a combination of independent ones: (column, [(independent column, coefficient)]), empty for a zero column.
     pub dependent: Vec<(usize, Vec<(usize, Number)>)>,
+    /// Columns that are combinations, too, and of which ones: the coefficients would be too long.
+    pub too_long: Vec<(usize, Vec<usize>)>,
 }
 
 /// Number of states with small numbers that are tried first.
-const SIMPLE_STATES: u64 = 24;
+const SIMPLE_STATES: usize = 24;
 
 /// The dependence among the columns of `y`, `y[joint][column]`, taken in order: a column is kept unless those before it span it.
 pub fn dependence(pool: &Pool, y: &[Vec<ExprId>]) -> Dependence {
+    dependence_within(MOST_PRODUCTS, pool, y)
+}
+
+/// The same within so many products.
+pub(super) fn dependence_within(most: usize, pool: &Pool, y: &[Vec<ExprId>]) -> Dependence {
     let columns = y.first().map_or(0, Vec::len);
     let (pivots, reduced) = stacked_echelon(pool, y);
-    let (mut dependent, mut missed) = (Vec::new(), Vec::new());
-    for column in (0..columns).filter(|c| !pivots.contains(c)) {
-        let support: Vec<usize> =
-            pivots.iter().enumerate().filter(|&(row, _)| reduced[row][column] != pool.field().zero()).map(|(_, &p)| p).collect();
-        let coefficients = if support.is_empty() { Some(Vec::new()) } else { exact_combination(pool, y, column, &support) };
-        match coefficients {
-            Some(coefficients) => dependent.push((column, support.into_iter().zip(coefficients).collect())),
-            None => missed.push(column),
+    let wanted: Vec<(usize, Vec<usize>)> = (0..columns)
+        .filter(|column| !pivots.contains(column))
+        .map(|column| {
+            let in_row = |row: usize| reduced[row][column] != pool.field().zero();
+            (column, pivots.iter().enumerate().filter(|&(row, _)| in_row(row)).map(|(_, &pivot)| pivot).collect())
+        })
+        .collect();
+    let needed = wanted
+        .iter()
+        .filter(|(_, support)| !support.is_empty())
+        .flat_map(|(column, support)| [&[*column], &support[..]].concat());
+    let needed: BTreeSet<usize> = needed.collect();
+    let mut exact = Exact { field: pool.field().clone(), left: most };
+    let mut states = [false, true].map(|related| ExactStates::new(pool, y, &needed, related));
+    let mut found = Dependence { independent: pivots, dependent: Vec::new(), too_long: Vec::new() };
+    for (column, support) in wanted {
+        // One is enough to leave all out: the rest would take its time, too.
+        if !found.too_long.is_empty() {
+            found.too_long.push((column, support));
+            continue;
+        }
+        match exact_combination(&mut exact, &mut states, column, &support) {
+            Ok(Some(coefficients)) => found.dependent.push((column, support.into_iter().zip(coefficients).collect())),
+            Ok(None) => found.independent.push(column),
+            Err(TooLong) => found.too_long.push((column, support)),
         }
     }
-    let mut independent = [pivots, missed].concat();
-    independent.sort_unstable();
-    Dependence { independent, dependent }
+    found.independent.sort_unstable();
+    found
 }
 
 /// How many parameters a motion can tell apart: the rank of Y stacked over many states.
@@ -56,12 +82,20 @@ pub fn rank(pool: &Pool, y: &[Vec<ExprId>]) -> usize {
     stacked_echelon(pool, y).0.len()
 }
 
-/// The reduced row echelon form of Y stacked over enough states of the field.
+/// The reduced row echelon form of Y stacked over states of the field, until one more adds no row: a generic state then adds none.
 fn stacked_echelon(pool: &Pool, y: &[Vec<ExprId>]) -> (Vec<usize>, Vec<Vec<Element>>) {
     let columns = y.first().map_or(0, Vec::len);
-    let states = columns / y.len().max(1) + 4;
-    let matrix = (0..states as u64).flat_map(|state| field_values(pool, y, state)).collect();
-    echelon(pool.field(), matrix, columns)
+    let (mut pivots, mut reduced) = (Vec::new(), Vec::new());
+    for state in 0.. {
+        let rank = pivots.len();
+        reduced.extend(field_values(pool, y, state));
+        (pivots, reduced) = echelon(pool.field(), reduced, columns);
+        reduced.truncate(pivots.len());
+        if pivots.len() == rank {
+            break;
+        }
+    }
+    (pivots, reduced)
 }
 
 /// Values of Y at a state of the field, row by row.
@@ -129,66 +163,139 @@ fn echelon(field: &Field, mut matrix: Vec<Vec<Element>>, columns: usize) -> (Vec
     (pivots, matrix)
 }
 
+/// Most products of numbers that have no one form, as those of sines of general angles, in the combinations of an arm.
+const MOST_PRODUCTS: usize = 20_000;
+
+/// The combinations of an arm take more than [`MOST_PRODUCTS`].
+struct TooLong;
+
+/// Exact arithmetic, of which the long part is counted.
+struct Exact {
+    field: Field,
+    /// How many products are left.
+    left: usize,
+}
+
+impl Exact {
+    fn times(&mut self, a: &Number, b: &Number) -> Result<Number, TooLong> {
+        self.count(a, b)?;
+        Ok(a.times(b))
+    }
+
+    /// Counts a product; those of reduced numbers, which stay short, are free.
+    fn count(&mut self, a: &Number, b: &Number) -> Result<(), TooLong> {
+        let counted = usize::from(!a.is_reduced() || !b.is_reduced());
+        self.left = self.left.checked_sub(counted).ok_or(TooLong)?;
+        Ok(())
+    }
+}
+
 /// The exact coefficients of Y_column = Σ k_s Y_s over the support: from as many equations as unknowns, those with the smallest numbers. `None`
 /// where exact states do not have the relations between computed angles that the column depends by.
-fn exact_combination(pool: &Pool, y: &[Vec<ExprId>], column: usize, support: &[usize]) -> Option<Vec<Number>> {
-    type State<'a> = Box<dyn Fn(Symbol) -> Number + 'a>;
-    let states = || {
-        let simple = (0..SIMPLE_STATES).map(|s| Box::new(Pool::simple_state(s)) as State<'_>);
-        simple.chain((0..).map(|s| Box::new(Pool::rational_state(s)) as State<'_>))
-    };
-    let found = combination_at(pool, y, (column, support), states());
-    if pool.field().computed().is_none() || is_combination(pool, y, (column, support), &found) {
-        return Some(found);
+fn exact_combination(
+    exact: &mut Exact,
+    [plain, related]: &mut [ExactStates<'_>; 2],
+    column: usize,
+    support: &[usize],
+) -> Result<Option<Vec<Number>>, TooLong> {
+    if support.is_empty() {
+        return Ok(Some(Vec::new()));
     }
-    let related = states().map(|state| Box::new(pool.related_state(state)) as State<'_>);
-    let found = combination_at(pool, y, (column, support), related);
-    is_combination(pool, y, (column, support), &found).then_some(found)
+    let found = combination_at(exact, plain, column, support)?;
+    if plain.pool.field().computed().is_none() {
+        return Ok(found);
+    }
+    if found.as_ref().is_some_and(|found| plain.is_combination(&mut exact.field, (column, support), found)) {
+        return Ok(found);
+    }
+    let found = combination_at(exact, related, column, support)?;
+    Ok(found.filter(|found| related.is_combination(&mut exact.field, (column, support), found)))
 }
 
-/// Whether a column of Y is the combination of others, at the points of the field.
-fn is_combination(pool: &Pool, y: &[Vec<ExprId>], (column, support): (usize, &[usize]), coefficients: &[Number]) -> bool {
-    let mut field = pool.field().clone();
-    let coefficients: Vec<Element> = coefficients.iter().map(|number| field.number(number)).collect();
-    y.iter().all(|row| {
-        (0..2).all(|point| {
-            let terms = support.iter().zip(&coefficients).map(|(&c, &k)| field.mul(k, pool.fingerprint(row[c])[point]));
-            terms.fold(field.zero(), |sum, term| field.add(sum, term)) == pool.fingerprint(row[column])[point]
+/// Exact values of Y at states with numbers as small as possible, each state evaluated once for all columns.
+struct ExactStates<'a> {
+    pool: &'a Pool,
+    y: &'a [Vec<ExprId>],
+    /// The entries of the columns that are needed, row by row, and the place of each of these columns.
+    entries: Vec<ExprId>,
+    places: BTreeMap<usize, usize>,
+    /// Whether the states have the relations between computed angles.
+    related: bool,
+    values: Vec<Vec<Number>>,
+}
+
+impl<'a> ExactStates<'a> {
+    fn new(pool: &'a Pool, y: &'a [Vec<ExprId>], columns: &BTreeSet<usize>, related: bool) -> Self {
+        let entries = y.iter().flat_map(|row| columns.iter().map(|&column| row[column])).collect();
+        let places = columns.iter().copied().zip(0..).collect();
+        ExactStates { pool, y, entries, places, related, values: Vec::new() }
+    }
+
+    /// The values of these columns at a state, row by row.
+    fn rows(&mut self, state: usize, columns: &[usize]) -> Vec<Vec<Number>> {
+        while self.values.len() <= state {
+            let values = self.evaluated(self.values.len());
+            self.values.push(values);
+        }
+        let rows = self.values[state].chunks(self.places.len());
+        rows.map(|row| columns.iter().map(|column| row[self.places[column]].clone()).collect()).collect()
+    }
+
+    fn evaluated(&self, state: usize) -> Vec<Number> {
+        let of: Box<dyn Fn(Symbol) -> Number> = match state.checked_sub(SIMPLE_STATES) {
+            None => Box::new(Pool::simple_state(state as u64)),
+            Some(state) => Box::new(Pool::rational_state(state as u64)),
+        };
+        let values = if self.related {
+            self.pool.evaluate(&self.entries, &self.pool.related_state(of))
+        } else {
+            self.pool.evaluate(&self.entries, &of)
+        };
+        values.expect("a regressor has no reciprocals")
+    }
+
+    /// Whether a column of Y is the combination of others, at the points of the field.
+    fn is_combination(&self, field: &mut Field, (column, support): (usize, &[usize]), coefficients: &[Number]) -> bool {
+        let coefficients: Vec<Element> = coefficients.iter().map(|number| field.number(number)).collect();
+        self.y.iter().all(|row| {
+            (0..2).all(|point| {
+                let value = |column: usize| self.pool.fingerprint(row[column])[point];
+                let terms = support.iter().zip(&coefficients).map(|(&c, &k)| field.mul(k, value(c)));
+                terms.fold(field.zero(), |sum, term| field.add(sum, term)) == value(column)
+            })
         })
-    })
+    }
 }
 
-/// The coefficients that these states give.
-fn combination_at<'a>(
-    pool: &Pool,
-    y: &[Vec<ExprId>],
-    (column, support): (usize, &[usize]),
-    mut states: impl Iterator<Item = Box<dyn Fn(Symbol) -> Number + 'a>>,
-) -> Vec<Number> {
-    let mut field = pool.field().clone();
+/// The coefficients that these states give; `None` where they show that the column is no such combination.
+fn combination_at(
+    exact: &mut Exact,
+    states: &mut ExactStates<'_>,
+    column: usize,
+    support: &[usize],
+) -> Result<Option<Vec<Number>>, TooLong> {
+    let columns = [support, &[column]].concat();
     let mut equations: Vec<Vec<Number>> = Vec::new();
-    let mut wanted = SIMPLE_STATES as usize;
+    let (mut seen, mut wanted) = (0, SIMPLE_STATES);
     loop {
-        for of in states.by_ref().take(wanted) {
-            for row in y {
-                let exprs: Vec<ExprId> = support.iter().chain([&column]).map(|&c| row[c]).collect();
-                let equation = pool.evaluate(&exprs, &of).expect("a regressor has no reciprocals");
-                if equation.iter().any(|x| !x.is_zero()) {
-                    equations.push(equation);
-                }
-            }
+        for state in seen..wanted {
+            let rows = states.rows(state, &columns).into_iter();
+            equations.extend(rows.filter(|equation| equation.iter().any(|x| !x.is_zero())));
         }
         equations.sort_by_cached_key(|equation| (equation.iter().map(|x| x.terms().count()).sum::<usize>(), equation.clone()));
         equations.dedup();
         let values: Vec<Vec<Element>> =
-            (0..=support.len()).map(|k| equations.iter().map(|e| field.number(&e[k])).collect()).collect();
+            (0..columns.len()).map(|k| equations.iter().map(|e| exact.field.number(&e[k])).collect()).collect();
         // Independent equations are the pivots among the columns of the transposed system.
-        let (independent, _) = echelon(&field, values, equations.len());
-        if independent.len() == support.len() {
-            let system: Vec<Vec<Number>> = independent.into_iter().map(|e| equations[e].clone()).collect();
-            return solve(&mut field, system);
+        let (independent, _) = echelon(&exact.field, values, equations.len());
+        match independent.len().cmp(&support.len()) {
+            Ordering::Less => (seen, wanted) = (wanted, wanted + columns.len()),
+            Ordering::Equal => {
+                let system: Vec<Vec<Number>> = independent.into_iter().map(|e| equations[e].clone()).collect();
+                return solve(exact, system).map(Some);
+            }
+            Ordering::Greater => return Ok(None),
         }
-        wanted = support.len() + 1;
     }
 }
 
@@ -196,27 +303,27 @@ fn combination_at<'a>(
 ///
 /// First unknowns are eliminated by entries that have a short inverse, fractions before others, those that change fewest entries first;
 /// quotients of general constants are left to the few equations that then remain.
-fn solve(field: &mut Field, mut system: Vec<Vec<Number>>) -> Vec<Number> {
+fn solve(exact: &mut Exact, mut system: Vec<Vec<Number>>) -> Result<Vec<Number>, TooLong> {
     let n = system.len();
     for entry in system.iter_mut().flatten() {
-        *entry = zero_if_zero(field, std::mem::take(entry));
+        *entry = zero_if_zero(&mut exact.field, std::mem::take(entry));
     }
     let (mut rows, mut unknowns): (Vec<usize>, Vec<usize>) = ((0..n).collect(), (0..n).collect());
     let mut eliminated = Vec::new();
     while let Some((row, unknown)) = simplest_pivot(&system, &rows, &unknowns) {
         rows.retain(|&r| r != row);
         unknowns.retain(|&c| c != unknown);
-        let scale = system[row][unknown].clone();
+        let scale = Divisor::new(&system[row][unknown]);
         for &c in unknowns.iter().chain([&n]) {
-            system[row][c] = quotient(field, &system[row][c], &scale);
+            system[row][c] = scale.divide(exact, &system[row][c])?;
         }
         let pivot = system[row].clone();
         for &r in &rows {
             let factor = system[r][unknown].clone();
             if !factor.is_zero() {
                 for &c in unknowns.iter().chain([&n]).filter(|&&c| !pivot[c].is_zero()) {
-                    let difference = system[r][c].minus(&factor.times(&pivot[c]));
-                    system[r][c] = zero_if_zero(field, difference);
+                    let difference = system[r][c].minus(&exact.times(&factor, &pivot[c])?);
+                    system[r][c] = zero_if_zero(&mut exact.field, difference);
                 }
             }
         }
@@ -224,20 +331,20 @@ fn solve(field: &mut Field, mut system: Vec<Vec<Number>>) -> Vec<Number> {
     }
     let rest = rows.iter().map(|&r| unknowns.iter().chain([&n]).map(|&c| system[r][c].clone()).collect()).collect();
     let mut solution = vec![Number::zero(); n];
-    for (&unknown, value) in unknowns.iter().zip(solve_general(field, rest)) {
+    for (&unknown, value) in unknowns.iter().zip(solve_general(exact, rest)?) {
         solution[unknown] = value;
     }
     for (row, unknown, others) in eliminated.into_iter().rev() {
         let mut value = system[row][n].clone();
         for c in others {
             if !system[row][c].is_zero() && !solution[c].is_zero() {
-                value = value.minus(&system[row][c].times(&solution[c]));
+                value = value.minus(&exact.times(&system[row][c], &solution[c])?);
             }
         }
-        let value = zero_if_zero(field, value);
-        solution[unknown] = as_fraction(field, value);
+        let value = zero_if_zero(&mut exact.field, value);
+        solution[unknown] = as_fraction(&mut exact.field, value);
     }
-    solution
+    Ok(solution)
 }
 
 /// Row and unknown of the entry to eliminate by next; `None` if there is no simple one.
@@ -268,41 +375,43 @@ fn zero_if_zero(field: &mut Field, number: Number) -> Number {
 }
 
 /// The solution of a regular system of general constants.
-fn solve_general(field: &mut Field, mut system: Vec<Vec<Number>>) -> Vec<Number> {
+fn solve_general(exact: &mut Exact, mut system: Vec<Vec<Number>>) -> Result<Vec<Number>, TooLong> {
     let n = system.len();
     if n <= LARGEST_BY_MINORS {
         // By Cramer's rule: no quotient before the last step.
-        let determinant = minors(&system, &(0..n).collect::<Vec<_>>());
+        let determinant = Divisor::new(&minors(exact, &system, &(0..n).collect::<Vec<_>>())?);
         return (0..n)
             .map(|k| {
                 let columns: Vec<usize> = (0..n).map(|c| if c == k { n } else { c }).collect();
-                quotient(field, &minors(&system, &columns), &determinant)
+                let minor = minors(exact, &system, &columns)?;
+                determinant.divide(exact, &minor)
             })
             .collect();
     }
     for k in 0..n {
         let pivot = (k..n).find(|&r| !system[r][k].is_zero()).expect("the system is regular");
         system.swap(k, pivot);
-        let scale = system[k][k].clone();
-        let row: Vec<Number> = system[k].iter().map(|x| quotient(field, x, &scale)).collect();
+        let scale = Divisor::new(&system[k][k]);
+        let row: Vec<Number> = system[k].iter().map(|x| scale.divide(exact, x)).collect::<Result<_, _>>()?;
         for (r, other) in system.iter_mut().enumerate() {
             let factor = other[k].clone();
             if r != k && !factor.is_zero() {
                 for (x, p) in other.iter_mut().zip(&row) {
-                    *x = zero_if_zero(field, x.minus(&factor.times(p)));
+                    let product = exact.times(&factor, p)?;
+                    *x = zero_if_zero(&mut exact.field, x.minus(&product));
                 }
             }
         }
         system[k] = row;
     }
-    system.into_iter().map(|mut row| row.pop().expect("the right-hand side")).collect()
+    Ok(system.into_iter().map(|mut row| row.pop().expect("the right-hand side")).collect())
 }
 
 /// Systems up to this size over general constants are solved by minors.
 const LARGEST_BY_MINORS: usize = 8;
 
 /// The determinant of chosen columns, by expansion along rows over sets of columns, each set once.
-fn minors(system: &[Vec<Number>], columns: &[usize]) -> Number {
+fn minors(exact: &mut Exact, system: &[Vec<Number>], columns: &[usize]) -> Result<Number, TooLong> {
     let n = columns.len();
     let mut of_set: Vec<Number> = vec![Number::zero(); 1 << n];
     of_set[0] = Number::one();
@@ -312,22 +421,36 @@ fn minors(system: &[Vec<Number>], columns: &[usize]) -> Number {
         for (place, (k, &column)) in columns.iter().enumerate().filter(|(k, _)| set >> k & 1 == 1).enumerate() {
             let entry = &system[row][column];
             if !entry.is_zero() {
-                let term = entry.times(&of_set[set & !(1 << k)]);
+                let term = exact.times(entry, &of_set[set & !(1 << k)])?;
                 sum = if (row + place).is_multiple_of(2) { sum.plus(&term) } else { sum.minus(&term) };
             }
         }
         of_set[set] = sum;
     }
-    of_set.pop().expect("the full set")
+    Ok(of_set.pop().expect("the full set"))
 }
 
-/// a/b; as a fraction if the value is a fraction, however a and b are written.
-fn quotient(field: &mut Field, a: &Number, b: &Number) -> Number {
-    let value = a.checked_div(b).expect("the divisor is not zero");
-    if value.terms().count() == 1 && b.terms().count() == 1 {
-        return value;
+/// A divisor, inverted once for all that it divides.
+struct Divisor {
+    inverse: Number,
+    is_one_term: bool,
+}
+
+impl Divisor {
+    fn new(number: &Number) -> Divisor {
+        let inverse = number.inverse().expect("the divisor is not zero");
+        Divisor { inverse, is_one_term: number.terms().count() == 1 }
     }
-    as_fraction(field, value)
+
+    /// The quotient; as a fraction if the value is a fraction, however both are written.
+    fn divide(&self, exact: &mut Exact, number: &Number) -> Result<Number, TooLong> {
+        exact.count(number, &self.inverse)?;
+        let value = number * &self.inverse;
+        if value.terms().count() == 1 && self.is_one_term {
+            return Ok(value);
+        }
+        Ok(as_fraction(&mut exact.field, value))
+    }
 }
 
 /// The number, as a fraction where it is a short one however it is written.
@@ -382,38 +505,36 @@ pub fn base_regressor(pool: &mut Pool, arm: &Arm, vector: &ParameterVector, plan
 ///
 /// Parameters that no joint feels are first grouped towards the base in joint frames, exactly and without a division. The rank
 /// then shows the remaining dependences, where a motion near the base is restricted or a rotor turns with a link.
-pub fn base_parameters(manipulator: &Manipulator, field: &Field) -> ParameterVector {
-    grouped(manipulator, field, GroupingConvention::NoInertiaAboutY, false)
+///
+/// `None` where the exact combinations are too long to be formed, here and for the others.
+pub fn base_parameters(manipulator: &Manipulator, field: &Field) -> Option<ParameterVector> {
+    base_combinations(manipulator, field).map(|(vector, _)| vector)
 }
 
 /// The base parameters of `base_regressor`: those that are not zero, with the masses of its rotors among the values, so that Y pi is the
 /// whole torque. Links keep no second moment along their axes, because the moment of a point mass on the x or y axis has two components
 /// only.
-pub fn base_parameters_with_rotors(manipulator: &Manipulator, field: &Field) -> ParameterVector {
-    let ParameterVector { entries, kind } = grouped(manipulator, field, GroupingConvention::NoSecondMomentAlongAxis, true);
+pub fn base_parameters_with_rotors(manipulator: &Manipulator, field: &Field) -> Option<ParameterVector> {
+    let (ParameterVector { entries, kind }, _) = combined(manipulator, field, GroupingConvention::NoSecondMomentAlongAxis, true)?;
     let ParameterKind::Base(columns) = kind else { unreachable!("base parameters are grouped") };
     let used = entries.into_iter().zip(columns).filter(|(entry, _)| !entry.nominal.is_zero());
     let (entries, columns) = used.unzip();
-    ParameterVector { entries, kind: ParameterKind::Base(columns) }
-}
-
-/// The base parameters. The masses of rotors are no parameters; they are known, or, for `base_regressor`, part of the links' values.
-fn grouped(manipulator: &Manipulator, field: &Field, convention: GroupingConvention, own: bool) -> ParameterVector {
-    combined(manipulator, field, convention, own).0
+    Some(ParameterVector { entries, kind: ParameterKind::Base(columns) })
 }
 
 /// The base parameters of [`base_parameters`], and each as coefficients of the standard parameters.
-pub fn base_combinations(manipulator: &Manipulator, field: &Field) -> (ParameterVector, Vec<Vec<Number>>) {
+pub fn base_combinations(manipulator: &Manipulator, field: &Field) -> Option<(ParameterVector, Vec<Vec<Number>>)> {
     combined(manipulator, field, GroupingConvention::NoInertiaAboutY, false)
 }
 
-/// The base parameters, and each as coefficients of the standard parameters and, last, its constant part.
+/// The base parameters, and each as coefficients of the standard parameters and, last, its constant part. `own`: the masses of rotors are part of
+/// the links' values, for `base_regressor`; otherwise they are known.
 fn combined(
     manipulator: &Manipulator,
     field: &Field,
     convention: GroupingConvention,
     own: bool,
-) -> (ParameterVector, Vec<Vec<Number>>) {
+) -> Option<(ParameterVector, Vec<Vec<Number>>)> {
     let mut pool = Pool::new(field.clone());
     let standard = ParameterVector::standard(manipulator);
     let mut arm = Arm::new(&mut pool, manipulator, View::Vector(&standard));
@@ -435,6 +556,9 @@ fn combined(
     }
     let (pool, y) = in_coordinates(pool, &arm, y);
     let dependence = dependence(&pool, &y);
+    if !dependence.too_long.is_empty() {
+        return None;
+    }
     let mut base: Vec<(StandardParameter, Parameter, Vec<Number>)> = dependence
         .independent
         .iter()
@@ -453,7 +577,7 @@ fn combined(
     base.sort_by_key(|(parameter, ..)| *parameter);
     let combinations = base.iter().map(|(.., total)| total.clone()).collect();
     let (kept, entries) = base.into_iter().map(|(parameter, entry, _)| (parameter, entry)).unzip();
-    (ParameterVector { entries, kind: ParameterKind::Base(kept) }, combinations)
+    Some((ParameterVector { entries, kind: ParameterKind::Base(kept) }, combinations))
 }
 
 /// The rows of a regressor, or several blocks of them, in coordinates: S' Y.

@@ -32,7 +32,7 @@ pub struct Model {
     /// The parameter vector that its `regressor` chooses.
     pub parameters: ParameterVector,
     /// Its base parameters, computed at the first use.
-    base: OnceLock<ParameterVector>,
+    base: OnceLock<Option<ParameterVector>>,
 }
 
 impl Model {
@@ -48,14 +48,19 @@ impl Model {
         Model { manipulator: self.manipulator.at(tip), ..self.clone() }
     }
 
-    /// The base parameters, the masses of rotors among their values.
-    pub fn base_parameters(&self) -> &ParameterVector {
-        self.base.get_or_init(|| base::base_parameters_with_rotors(&self.manipulator, &self.field))
+    /// The base parameters, the masses of rotors among their values; `None` where their exact combinations are too long to be formed.
+    pub fn base_parameters(&self) -> Option<&ParameterVector> {
+        self.base.get_or_init(|| base::base_parameters_with_rotors(&self.manipulator, &self.field)).as_ref()
+    }
+
+    /// How many there are, 0 where they are not formed.
+    pub fn base_count(&self) -> usize {
+        self.base_parameters().map_or(0, ParameterVector::len)
     }
 
     /// The numbers that determine the dimensions of the quantities.
     pub fn sizes(&self) -> Sizes {
-        self.sizes_with(self.base_parameters().len())
+        self.sizes_with(self.base_count())
     }
 
     /// The same with that number of base parameters, which are not looked for.

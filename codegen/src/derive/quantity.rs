@@ -568,7 +568,7 @@ impl Quantity {
         let mut pool = Pool::new(model.field.clone());
         let mut arm = Arm::new(&mut pool, &model.manipulator, input.view);
         prepare(&mut pool, &mut arm);
-        let sizes = model.sizes_with(if self.has_length(Length::BaseParameters) { model.base_parameters().len() } else { 0 });
+        let sizes = model.sizes_with(if self.has_length(Length::BaseParameters) { model.base_count() } else { 0 });
         let blank = Pool::new(arm.field_of_coordinates(&model.field));
         let derive = |mut pool: Pool, into: Pool, plan: &mut Plan| {
             let mut arm = arm.clone();

@@ -395,7 +395,9 @@ fn forward_dynamics_inverts_inverse_dynamics() {
 fn torque_is_the_regressor_times_the_parameters() {
     for manipulator in arms() {
         let field = field_of(&manipulator);
-        for vector in [ParameterVector::standard(&manipulator), base::base_parameters(&manipulator, &field)] {
+        for vector in
+            [ParameterVector::standard(&manipulator), base::base_parameters(&manipulator, &field).expect("short combinations")]
+        {
             let mut pool = Pool::new(field.clone());
             let arm = Arm::new(&mut pool, &manipulator, View::Vector(&vector));
             let y = regressor::regressor(&mut pool, &arm, &vector);
@@ -419,11 +421,55 @@ fn torque_is_the_regressor_times_the_parameters() {
     }
 }
 
+/// A branch that turns with a multiple of the joint before it, between frames at general angles.
+const GENERAL_COUPLED: &str = "
+name: coupled
+convention: urdf
+gravity: [0, 0, -9.81]
+joints:
+  - {name: a, type: revolute, origin: {xyz: [0.25, 0, 0.25], rpy: [0, 0.3490658, -0.7853982]}, axis: [1, 0, 0], link: {mass: 4}}
+  - name: b
+    type: revolute
+    origin: {xyz: [0.15, -0.05, 0.05], rpy: [0, 1.0471976, 0.5235988]}
+    axis: [0, 0, 1]
+    follows: {a: -2}
+    link: {mass: 7, com: [0.03, -0.03, 0.1], inertia: {xx: 0.31, xy: 0.01, yy: 0.32, xz: 0.02, yz: 0.003, zz: 0.4}}
+  - name: c
+    type: prismatic
+    origin: {xyz: [-0.15, 0.1, 0.35], rpy: [-1.2217305, -1.2217305, 0]}
+    axis: [1, 0, 0]
+    link: {mass: 6, com: [0.06, -0.06, 0.1], inertia: {xx: 0.31, xy: 0.01, yy: 0.32, xz: 0.02, yz: 0.003, zz: 0.4}}
+  - name: d
+    type: revolute
+    parent: b
+    origin: {xyz: [0.1, 0.15, 0.3], rpy: [0, -1.2217305, 1.0471976]}
+    axis: [1, 0, 0]
+    link: {mass: 8, com: [0.06, -0.08, 0.1], inertia: {xx: 0.31, xy: 0.01, yy: 0.32, xz: 0.02, yz: 0.003, zz: 0.4}}
+  - {name: e, type: revolute, parent: d, origin: {xyz: [0, 0.1, 0.2], rpy: [0.5, 0, 0]}, axis: [0, 0, 1], follows: {a: 3}, link: {mass: 2}}
+";
+
+/// Columns that depend by the relation between two angles are no combination where states ignore it; and one coordinate shows the columns of
+/// several links, in as many states as that takes.
+#[test]
+fn base_parameters_of_coupled_general_angles_are_as_many_as_the_rank() {
+    let (arm, _) = crate::validate::read(&Source::new("robot.yaml", GENERAL_COUPLED)).0.expect("valid");
+    let field = field_of(&arm);
+    let (pool, y) = base::regressor_of(&arm, &field, &ParameterVector::standard(&arm));
+    let rank = base::rank(&pool, &y);
+    let vector = base::base_parameters(&arm, &field).expect("short combinations");
+    assert_eq!(vector.len(), rank);
+    // Without a product none is formed, and the rank stays what it is.
+    let few = base::dependence_within(0, &pool, &y);
+    assert_eq!(few.independent.len(), rank);
+    assert!(!few.too_long.is_empty());
+    assert_eq!(few.independent.len() + few.dependent.len() + few.too_long.len(), y[0].len());
+}
+
 #[test]
 fn base_parameters_are_independent_and_as_many_as_the_rank() {
     for manipulator in arms() {
         let field = field_of(&manipulator);
-        let vector = base::base_parameters(&manipulator, &field);
+        let vector = base::base_parameters(&manipulator, &field).expect("short combinations");
         let (pool, y) = base::regressor_of(&manipulator, &field, &vector);
         assert_eq!(base::rank(&pool, &y), vector.len());
         let (pool, y) = base::regressor_of(&manipulator, &field, &ParameterVector::standard(&manipulator));
@@ -584,7 +630,7 @@ fn momentum_and_coriolis_transposed_are_those_of_the_matrices() {
 fn torque_is_the_base_regressor_times_the_base_parameters() {
     for manipulator in arms().into_iter().chain(reduced_arms()) {
         let model = crate::Model::new(manipulator);
-        let vector = model.base_parameters();
+        let vector = model.base_parameters().expect("short combinations");
         let mut pool = Pool::new(model.field.clone());
         let mut arm = Arm::new(&mut pool, &model.manipulator, View::Vector(vector));
         base::place_frames_for_base_parameters(&mut pool, &mut arm);

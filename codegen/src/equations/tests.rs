@@ -47,6 +47,16 @@ fn an_arm_has_a_field_with_all_its_roots_or_is_too_complex() {
     check(&arm(&[("{mass: 2}", &format!("{{mass: 2, com: [{}]}}", all.join(", ")))]), &[Code::TooComplex]);
 }
 
+/// Base parameters that are too long are refused where the file asks for them.
+#[test]
+fn long_combinations_are_said_at_the_key() {
+    let text = arm(&[("", "regressor: base\n")]);
+    let (_, places) = valid(&text);
+    let found = long_combinations(&places);
+    assert_eq!(found.code, Code::TooComplex);
+    assert!(text[found.span().start..].starts_with("regressor: base"), "{found:?}");
+}
+
 /// A root in any quantity that the equations hold squares to its number in the field.
 #[test]
 fn roots_of_motors_and_friction_are_in_the_field() {

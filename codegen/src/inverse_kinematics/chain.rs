@@ -118,6 +118,9 @@ fn no_turn() -> [Number; 2] {
 /// Why an arm has no inverse kinematics if some of its joints move only other links.
 pub(super) const BESIDE: &str = "some joints do not move the end effector; a name for it under `tips` leaves them out";
 
+/// Why an arm has none whose links are given by frames.
+const NO_ROW: &str = "two of its axes have no common normal in exact numbers: use its Jacobian, with damping";
+
 impl Chain {
     /// The joints from the base to the end effector.
     pub(super) fn of(manipulator: &Manipulator) -> Result<Chain, String> {
@@ -138,7 +141,7 @@ impl Chain {
                 base = placed;
                 joints.push(Joint { prismatic, theta: no_turn(), d: Number::zero() });
             } else {
-                let (normal, theta, d) = normal_and_joint(&placed).ok_or("a link is no row of Denavit and Hartenberg")?;
+                let (normal, theta, d) = normal_and_joint(&placed).ok_or(NO_ROW)?;
                 normals.push(normal);
                 joints.push(Joint { prismatic, theta, d });
             }

@@ -69,6 +69,7 @@ impl Selection {
                 let names: Vec<String> = tips.iter().map(|tip| tip.prefix() + quantity.name).collect();
                 format!("each end effector has its own, {}", names.join(", "))
             }
+            (_, None) if known.contains(&name.to_ascii_lowercase()) => format!("it is called {}", name.to_ascii_lowercase()),
             (_, None) => {
                 let names: Vec<&str> = tips.iter().map(|tip| tip.name.as_str()).collect();
                 format!("the end effectors are {}", names.join(", "))

@@ -102,7 +102,7 @@ fn matrix(model: &Model, part: &ResultPart, name: String, symbol: [String; 2], d
     let sizes = model.sizes();
     let columns_of = match part.columns() {
         Length::Parameters => Some(&model.parameters),
-        Length::BaseParameters => Some(model.base_parameters()),
+        Length::BaseParameters => model.base_parameters(),
         _ => None,
     };
     let closed = if names.style.form == Form::Steps { None } else { derivation.closed_forms() };

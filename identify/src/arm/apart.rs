@@ -4,7 +4,7 @@
 //! the three depends on the others. The coupling of a rotor with the turning of its link is left out here: it is weaker by the ratio, so
 //! that in logs it does not tell the three apart. A gravity torque that is constant makes load friction a multiple of Coulomb friction.
 
-use armgen_codegen::derive::base::{dependence, regressor_of};
+use armgen_codegen::derive::base::{dependence, regressor_of, Dependence};
 use armgen_codegen::derive::parameters::{ParameterKind, ParameterVector, StandardParameter};
 use armgen_codegen::ring::{Elementary, ExprId, Pool, Symbol};
 use armgen_codegen::Model;
@@ -42,14 +42,17 @@ pub(super) fn dependent_friction(model: &Model, base: &ParameterVector) -> Vec<D
         }
     }
     let place = |column: usize| ((column - first) / 6, (column - first) % 6);
-    dependence(&pool, &y)
-        .dependent
+    let Dependence { dependent, too_long, .. } = dependence(&pool, &y);
+    let columns = |(column, combination): (usize, Vec<(usize, _)>)| (column, combination.into_iter().map(|(of, _)| of).collect());
+    dependent
         .into_iter()
+        .map(columns)
+        .chain(too_long)
         .filter(|(column, _)| *column >= first)
-        .map(|(column, combination)| {
+        .map(|(column, combination): (usize, Vec<usize>)| {
             let (joint, term) = place(column);
-            let of_base = combination.iter().map(|(column, _)| *column).filter(|column| *column < first).collect();
-            let of_friction = combination.iter().map(|(column, _)| *column).filter(|c| *c >= first).map(place).collect();
+            let of_base = combination.iter().copied().filter(|&column| column < first).collect();
+            let of_friction = combination.iter().copied().filter(|&c| c >= first).map(place).collect();
             Dependent { joint, term, on: (of_base, of_friction) }
         })
         .collect()

@@ -7,7 +7,7 @@
 use std::collections::{BTreeMap, BTreeSet};
 
 use armgen_codegen::derive::base::{base_parameters, dependence, rank, regressor_of, Dependence};
-use armgen_codegen::derive::parameters::ParameterKind;
+use armgen_codegen::derive::parameters::{ParameterKind, ParameterVector};
 use armgen_codegen::exact::Number;
 use armgen_codegen::manipulator::Manipulator;
 use armgen_codegen::Model;
@@ -25,26 +25,35 @@ pub(super) fn report(model: &Model) -> String {
         return "  Nothing in the arm has mass or inertia: its module holds frames, Jacobians and their rates.\n".into();
     }
     let base = base_parameters(&model.manipulator, &model.field);
-    let (pool, y) = regressor_of(&model.manipulator, &model.field, &base);
-    let rank = rank(&pool, &y);
+    let rank = rank_of(model);
     let directions = if model.manipulator.gravity_is_argument { of_directions(&model.manipulator, rank) } else { String::new() };
     let has_all = matches!(model.parameters.kind, ParameterKind::Base(_));
-    of_regressor(model, rank) + &directions + &of_base_regressor(model, base.len(), rank, has_all)
+    let chosen = of_regressor(model, rank, base.is_some());
+    let base_regressor = match base {
+        Some(base) => of_base_regressor(model, base.len(), rank, has_all),
+        None => "\n  The base parameters are not listed, and the module has no `base_regressor`:\n  \
+                 exact combinations of its general angles are too long to be formed.\n"
+            .into(),
+    };
+    chosen + &directions + &base_regressor
+}
+
+/// How many combinations of all parameters a motion can identify.
+fn rank_of(model: &Model) -> usize {
+    let (pool, y) = regressor_of(&model.manipulator, &model.field, &ParameterVector::standard(&model.manipulator));
+    rank(&pool, &y)
 }
 
 /// What the nominal gravity alone would leave of the `rank` combinations that gravity in all directions shows.
 fn of_directions(manipulator: &Manipulator, rank: usize) -> String {
-    let fixed = Model::new(Manipulator { gravity_is_argument: false, ..manipulator.clone() });
-    let base = base_parameters(&fixed.manipulator, &fixed.field);
-    let (pool, y) = regressor_of(&fixed.manipulator, &fixed.field, &base);
-    let alone = self::rank(&pool, &y);
+    let alone = rank_of(&Model::new(Manipulator { gravity_is_argument: false, ..manipulator.clone() }));
     format!("\n  The {rank} are those under gravity in all directions; under the nominal gravity alone they would be {alone}.\n")
 }
 
 /// A line about `base_regressor` if it has fewer columns than the `rank` that a motion can identify. `all` counts all base parameters; it
 /// is larger than the rank if they keep friction apart. `has_all`: whether the description chose the regressor with all of them.
 fn of_base_regressor(model: &Model, all: usize, rank: usize, has_all: bool) -> String {
-    let own = model.base_parameters().len();
+    let own = model.base_count();
     if own >= rank {
         return String::new();
     }
@@ -61,8 +70,8 @@ fn of_base_regressor(model: &Model, all: usize, rank: usize, has_all: bool) -> S
     )
 }
 
-/// The regressor that the description chooses; `rank` is that of all parameters.
-fn of_regressor(model: &Model, rank: usize) -> String {
+/// The regressor that the description chooses; `rank` is that of all parameters, `listed`: whether base parameters can be listed.
+fn of_regressor(model: &Model, rank: usize, listed: bool) -> String {
     let vector = &model.parameters;
     if vector.is_empty() {
         return "  The regressor has no parameters: nothing of this arm acts on the torques.\n".into();
@@ -89,11 +98,10 @@ fn of_regressor(model: &Model, rank: usize) -> String {
         }
         ParameterKind::Standard(_) => {
             format!(
-                "  The regressor has {} and rank {rank}: a motion can identify {} of them.\n  \
-                 With `regressor: base` this program lists them.\n",
+                "  The regressor has {} and rank {rank}: a motion can identify {} of them.\n",
                 counted(vector.len(), "parameter"),
                 counted(rank, "combination")
-            )
+            ) + if listed { "  With `regressor: base` this program lists them.\n" } else { "" }
         }
         ParameterKind::Names(_) => {
             let (pool, y) = regressor_of(&model.manipulator, &model.field, vector);

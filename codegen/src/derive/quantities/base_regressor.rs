@@ -1,10 +1,16 @@
 //! The regressor of the base parameters, Y_b(q, dq, ddq): columns of full rank, from `base.rs`.
 
 use crate::derive::base;
-use crate::derive::parameters::View;
+use crate::derive::model::Model;
+use crate::derive::parameters::{ParameterVector, View};
 use crate::derive::passes::RewriteScope;
 use crate::derive::quantity::{Argument, Documentation, Feature, Length, Quantity, Recursion, ResultPart, Typeset};
 use crate::derive::regressor::STARTS;
+
+/// The base parameters of an arm that has the function.
+fn kept(model: &Model) -> &ParameterVector {
+    model.base_parameters().expect("the function is left out without them")
+}
 
 /// Y_b(q, dq, ddq).
 pub static BASE_REGRESSOR: Quantity = Quantity {
@@ -23,8 +29,11 @@ pub static BASE_REGRESSOR: Quantity = Quantity {
          `regressor: base` in the description: it has all base parameters, zero or not.",
     )
     .with(Feature::LoadFriction, "Friction that grows with the load is not linear in parameters: the torque of {inverse_dynamics} has {load_friction} besides."),
-    recursion: Recursion { view: |model, _| View::Vector(model.base_parameters()), prepare: base::place_frames_for_base_parameters, starts: &STARTS, ..Recursion::new(RewriteScope::Frames, |pool, arm, plan, input| base::base_regressor(pool, arm, input.model.base_parameters(), plan).concat()) },
-    missing: Quantity::MISSING_WITHOUT_MASS,
+    recursion: Recursion { view: |model, _| View::Vector(kept(model)), prepare: base::place_frames_for_base_parameters, starts: &STARTS, ..Recursion::new(RewriteScope::Frames, |pool, arm, plan, input| base::base_regressor(pool, arm, kept(input.model), plan).concat()) },
+    missing: |model, with_parameters| {
+        let unknown = || model.base_parameters().is_none().then(|| "exact combinations of its parameters are too long to be formed".into());
+        Quantity::MISSING_WITHOUT_MASS(model, with_parameters).or_else(unknown)
+    },
     gathers: &[],
     interface: Some("BaseRegressor"),
 };
