@@ -17,12 +17,13 @@ const LEAST: usize = 5;
 /// Roots closer to an end than this, in distances of nodes, are at the end: the joint rests there within rounding.
 const AT_END: f64 = 1e-10;
 
-/// Base segments of each piece.
+/// Base segments of each piece, and whether the end effector is limited.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Layout<T> {
     density: T,
     /// Of slides: per metre.
     slide: T,
+    tool: Option<ToolLimit<T>>,
 }
 
 impl<T: RealField + Copy> Layout<T> {
@@ -64,7 +65,7 @@ pub(super) fn build<T: RealField + Copy, R: PathDynamics<N, Real = T>, const N: 
     let slide = if reach > T::zero() { T::one() / reach } else { T::zero() };
     let room = segments.len().saturating_sub(1);
     let at_start = |fault| TimingError { s: pieces.first().map_or(f64::NAN, |p| number(p.start)), piece: 0, fault };
-    let mut layout = Layout { density: lit(DENSITIES[0]), slide };
+    let mut layout = Layout { density: lit(DENSITIES[0]), slide, tool: tool.copied() };
     let (mut total, mut all_nodes) = (0, 0);
     for (density, share) in DENSITIES.iter().zip([2, 1]) {
         layout.density = lit(*density);
@@ -177,7 +178,6 @@ pub(super) fn halve<T: RealField + Copy, R: PathDynamics<N, Real = T>, const N: 
     segments: &mut [Segment<T, N>],
     count: usize,
     interpolation: &Interpolation<T>,
-    tool: Option<&ToolLimit<T>>,
 ) -> usize {
     let marked = segments.iter().take(count).filter(|segment| segment.split).count();
     let mut to = count + marked;
@@ -197,7 +197,7 @@ pub(super) fn halve<T: RealField + Copy, R: PathDynamics<N, Real = T>, const N: 
             let Some(of) = pieces.get(index) else { break };
             let n = layout.segments(robot, of);
             first -= (2 * n + 1).min(first);
-            let bounds = majorant::bounds(robot.link_bounds(), robot.gravity_length(), tool, of);
+            let bounds = majorant::bounds(robot.link_bounds(), robot.gravity_length(), layout.tool.as_ref(), of);
             current = Some((index, bounds, of.length / lit((2 * n) as f64)));
         }
         let mut put = |segment: Segment<T, N>| {
@@ -210,7 +210,7 @@ pub(super) fn halve<T: RealField + Copy, R: PathDynamics<N, Real = T>, const N: 
             put(Segment { split: false, ..segment });
             continue;
         };
-        let source = Source { piece, nodes, distance: *distance, bounds, with_tool: tool.is_some(), interpolation };
+        let source = Source { piece, nodes, distance: *distance, bounds, with_tool: layout.tool.is_some(), interpolation };
         let base: T = lit(segment.node.saturating_sub(first) as f64);
         let [left, right] = segment.ends;
         let middle = (left + right) * half;

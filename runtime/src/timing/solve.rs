@@ -138,7 +138,7 @@ pub fn time_optimal<'w, T: RealField + Copy, R: PathDynamics<N, Real = T>, S: As
             }
             break;
         }
-        count = grid::halve(robot, pieces, &layout, nodes, segments, count, &interpolation, limits.tool.as_ref());
+        count = grid::halve(robot, pieces, &layout, nodes, segments, count, &interpolation);
         solved = solved && best.duration.is_finite();
     }
     if !solved || !best.duration.is_finite() {

@@ -6,6 +6,7 @@ pub mod chain;
 pub mod ghost;
 pub mod gimbal;
 pub mod mass;
+pub mod paths;
 pub mod scara;
 pub mod single;
 
