@@ -469,6 +469,9 @@ fn least_squares<const N: usize>(of: &Equations<N>) -> Equations<N> {
 /// Two solutions that are no further apart than this times the root of u are one: 8e-8 in double precision.
 const SAME: Real = 8.0;
 
+/// Solutions that are no further apart than this times [`SAME`] times the root of u meet there.
+const MEET: Real = 8.0;
+
 /// How far two solutions are apart: the most by which the two values of a joint differ, slides in units of `length`.
 fn apart<const J: usize, const K: usize>(x: &[[Real; 2]; J], y: &[[Real; 2]; J], prismatic: &[bool; K], length: Real) -> Real {
     let mut largest: Real = 0.0;
@@ -509,11 +512,11 @@ fn close_from_beside(closing: &Loop<6>, joints: &[[Real; 2]; 6]) -> Closed<6> {
     }
 }
 
-/// Adds a solution unless it is known.
+/// Adds a solution unless it is known. Two that are apart by a few roots of rounding meet there: both are double.
 fn merge<const N: usize>(found: &mut Branches<6, N>, closing: &Loop<6>, closed: &Closed<6>, double: bool) {
     let same = SAME * sqrt(UNIT_ROUNDOFF);
     let double = closed.double || double;
-    let count = found.count;
+    let (count, mut meets) = (found.count, false);
     for known in found.all.iter_mut().take(count) {
         let off = apart(&known.joints, &closed.joints, &closing.prismatic, closing.length);
         // The place of a double solution is known to the root of the rounding only.
@@ -521,6 +524,9 @@ fn merge<const N: usize>(found: &mut Branches<6, N>, closing: &Loop<6>, closed: 
             known.double |= double;
             return;
         }
+        if off <= MEET * same {
+            (known.double, meets) = (true, true);
+        }
     }
-    found.add(Branch { joints: closed.joints, signs: 0, double, error: 0.0, free: 0 });
+    found.add(Branch { joints: closed.joints, signs: 0, double: double || meets, error: 0.0, free: 0 });
 }

@@ -83,7 +83,7 @@ fn join(found: &mut Branches<6, 16>, way: &Arrangement<6>, branch: &Branch<6>, l
             known.double |= branch.double;
             return;
         }
-        if off <= 8.0 * same {
+        if off <= MEET * same {
             (known.double, meets) = (true, true);
         }
     }
