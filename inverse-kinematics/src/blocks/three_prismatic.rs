@@ -27,17 +27,12 @@ pub fn three_prismatic(links: &[Frame; 6], turning: [usize; 3]) -> Branches<6, 8
     found.missed(turns.miss);
     let lengths_of_links = links.iter().fold(0.0, |sum, f| sum + extent(f));
     let noise = ROUNDING * lengths_of_links;
-    // How far directions may be off. Where two turns meet, t2 is known to the root of rounding; where axes 1 and 3 are nearly parallel, t1 and t3 to
-    // rounding over the sine between them.
+    // How far directions may be off: t2 is known to rounding over its sine, to the root of rounding where two turns meet; t1 and t3 to rounding over
+    // the sine between axes 1 and 3.
     let root = 8.0 * sqrt(ROUNDING);
     let by_turns = ROUNDING / (length(rest[0][2], rest[1][2]) + ROUNDING);
-    let doubt = if turns.free {
-        0.0
-    } else if turns.double {
-        root + by_turns
-    } else {
-        by_turns
-    };
+    let by_middle = 8.0 * ROUNDING / (turns.turns[0][1][1].abs() + sqrt(ROUNDING));
+    let doubt = if turns.free { 0.0 } else { by_turns + by_middle };
     for (number, turn) in turns.turns.iter().enumerate().take(turns.count) {
         let mut joints = [[0.0, 0.0]; 6];
         let mut directions = [[0.0; 3]; 3];
