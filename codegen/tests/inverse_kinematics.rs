@@ -194,7 +194,7 @@ fn planted_errors_are_seen() {
     let errors = [
         ("gantry", ["turns.turns.iter().enumerate().take(turns.count)", "turns.turns.iter().enumerate().take(1)"]),
         ("gantry", ["[-chain[0][3], -chain[1][3], -chain[2][3]]", "[chain[0][3], -chain[1][3], -chain[2][3]]"]),
-        ("gantry", ["if turns.free { 1 << r1 | 1 << r3 } else { 0 }", "0"]),
+        ("gantry", ["if turns.free { turns_bits } else { 0 }", "0"]),
         ("table", ["for (w, f) in [(w, plus), (-w, minus)] {", "for (w, f) in [(w, plus)] {"]),
         ("table", ["a: turned.a + r[3]", "a: turned.a - r[3]"]),
         ("table", ["take(roots.shallow_count)", "take(0)"]),

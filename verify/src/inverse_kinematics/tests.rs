@@ -427,8 +427,8 @@ fn other_texts_of_slides_are_refused() {
     let errors = [
         ("gantry", "take(turns.count)", "take(1)", why),
         ("gantry", "[-chain[0][3], -chain[1][3]", "[chain[0][3], -chain[1][3]", why),
-        ("gantry", "if turns.free { 1 << r1 | 1 << r3 } else { 0 }", "0", why),
-        ("gantry", places.0, places.1, "the joints that turn are others"),
+        ("gantry", "if turns.free { turns_bits } else { 0 }", "0", why),
+        ("gantry", "three_prismatic(&links, [", "three_prismatic(&links, [0, ", "the joints that turn are others"),
         ("two slides", "[(w, plus), (-w, minus)]", "[(w, plus)]", why),
         ("two slides", "a: turned.a + r[3]", "a: turned.a - r[3]", why),
         ("two slides", "take(roots.shallow_count)", "take(0)", why),
