@@ -321,11 +321,11 @@ fn part<const N: usize>(piece: &Piece<f64, N>, s: f64, length: f64) -> Piece<f64
     part
 }
 
-/// Stops at many times beside the plan that rests first, found by bisection of its end: by which part of the way of that plan they are
-/// longer, in ascending order. Below 0 no plan rests at some places beyond one where a plan does.
-fn stops<const N: usize>(chain: &Chain<N>, bounds: Bounds<N>, range: [f64; N], paths: u64) -> Vec<f64> {
+/// Stops at many times beside the plan that rests first, found by bisection of its end: by how many ends of segments, where alone the
+/// governor rests, it passes the first one after the end of that plan. How many stops pass 0, 1, 2 and more ends.
+fn stops<const N: usize>(chain: &Chain<N>, bounds: Bounds<N>, range: [f64; N], paths: u64) -> [usize; 4] {
     let step = Duration::from_micros(100);
-    let mut longer = Vec::new();
+    let mut passed = [0; 4];
     for seed in 0..paths {
         let path = random_path(&mut random(seed + 300), range);
         let whole = path.pieces().last().map_or(0.0, Piece::end);
@@ -353,26 +353,25 @@ fn stops<const N: usize>(chain: &Chain<N>, bounds: Bounds<N>, range: [f64; N], p
                     let middle = 0.5 * (low + high);
                     *(if is_possible(middle) { &mut high } else { &mut low }) = middle;
                 }
-                longer.push((rest.progress.s - high) / (high - begin.s));
+                let end = |i: usize| timing.profile(i).map(|p| p.start + p.length).expect("a segment");
+                let between = (0..timing.segments()).filter(|i| end(*i) > high && end(*i) < rest.progress.s - 1e-9).count();
+                passed[between.min(3)] += 1;
             }
         });
     }
-    longer.sort_by(f64::total_cmp);
-    longer
+    passed
 }
 
-/// A stop rests inside a segment, soon after the place that a search finds.
+/// Most stops rest at the first end that a plan reaches, nearly all others at the next.
 #[test]
 #[ignore = "wide"]
-fn stops_are_nearly_as_short_as_those_of_a_search() {
+fn stops_are_as_short_as_those_of_a_search() {
     let all = [
         stops(&chain::scara(), SCARA_LIMITS, [2.0, 2.0, 0.3, 3.0], 5),
         stops(&chain::ur5(), UR5_LIMITS, [3.0; 6], 5),
         stops(&chain::ur5().without_friction(), UR5_LIMITS, [3.0; 6], 5),
     ];
-    for (longer, [median, most]) in all.iter().zip([[0.02, 0.5], [0.08, 0.2], [0.05, 0.2]]) {
-        let of = |part: usize| longer[part * (longer.len() - 1) / 4];
-        println!("{:.4} {:.4} {:.4} {:.4}", of(1), of(2), of(3), of(4));
-        assert!(of(2) < median && of(4) < most, "{longer:?}");
-    }
+    println!("{all:?}");
+    assert!(all.iter().all(|[first, second, ..]| *first >= 35 && first + second >= 52), "{all:?}");
+    assert!(all[1..].iter().all(|[_, _, more @ ..]| more == &[0; 2]), "{all:?}");
 }

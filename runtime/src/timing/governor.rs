@@ -49,8 +49,7 @@ pub struct Governed<T, const N: usize> {
 ///
 /// At the start of each segment, and where the command changes and the segment goes on for a period, the rows of the limits give the
 /// interval of x = ds² at the segment's end. It is cut by the interval from which the end of the path can be reached. An override takes the
-/// value nearest to r² x of the timed motion, a stop the least. Where that is 0, the stop ends as early in the segment as rows are found, if
-/// the arm is held there and some rows lead on. So speeds change as fast as torques and accelerations allow, and each later
+/// value nearest to r² x of the timed motion, a stop the least. So speeds change as fast as torques and accelerations allow, and each later
 /// command finds a motion.
 #[derive(Clone, Debug)]
 pub struct Governor<'a, T, const N: usize> {
@@ -60,9 +59,8 @@ pub struct Governor<'a, T, const N: usize> {
     command: Command<T>,
     phase: Phase,
     segment: usize,
-    /// The fractions of the segment at which the law begins, and ends: before 1 at rest.
+    /// The fraction of the segment at which the law begins.
     from: T,
-    to: T,
     rows: Rows<T>,
     law: Law<T>,
     /// How long the law takes, and the time since it began, s.
@@ -84,8 +82,6 @@ struct Rows<T> {
 /// From which to which share of the timed motion's x rows hold; the last share has no upper end. Narrow windows have tight chords of
 /// friction, wide ones connect them.
 const WINDOWS: [[f64; 2]; 4] = [[0.0, 1.0], [0.0, 0.5], [0.3, 1.0], [0.8, 1.0]];
-/// A rest inside a segment is found to this power of 1/2 of the segment.
-const HALVINGS: usize = 5;
 /// Rows that are tried: those of the timed motion, and with three k of each window.
 const ROWS: usize = 1 + 3 * WINDOWS.len();
 
@@ -109,7 +105,6 @@ impl<'a, T: RealField + Copy, const N: usize> Governor<'a, T, N> {
             phase: Phase::Held,
             segment: 0,
             from: T::zero(),
-            to: T::one(),
             rows: Rows { k: T::zero(), assumed: first.inner.assumed },
             law: rest,
             duration: T::zero(),
@@ -212,10 +207,9 @@ impl<'a, T: RealField + Copy, const N: usize> Governor<'a, T, N> {
                 let t = s / self.law.length;
                 let rest = one - t;
                 if rest > lit(1e-6) {
-                    // The motion until now stays possible: its rows hold on every part of the segment. One that rests inside does so first.
+                    // The motion until now stays possible: its rows hold on every part of the segment.
                     let rows = Rows { k: self.rows.k * rest * rest, assumed: self.rows.assumed };
-                    let rows = (self.to == one).then_some(rows);
-                    self.plan(self.law.x(t).max(zero), self.from + (self.to - self.from) * t, rows);
+                    self.plan(self.law.x(t).max(zero), self.from + (one - self.from) * t, Some(rows));
                 }
             }
         }
@@ -227,14 +221,7 @@ impl<'a, T: RealField + Copy, const N: usize> Governor<'a, T, N> {
 
     /// Goes on to the next segment, or rests.
     fn leave(&mut self) {
-        let (zero, one, x) = (T::zero(), T::one(), self.law.x2.max(T::zero()));
-        if self.to < one {
-            (self.from, self.to, self.time, self.phase) = (self.to, one, zero, Phase::Held);
-            if self.wants_to_move() {
-                self.plan(zero, self.from, None);
-            }
-            return;
-        }
+        let (zero, x) = (T::zero(), self.law.x2.max(T::zero()));
         self.segment += 1;
         self.from = zero;
         self.time = zero;
@@ -279,13 +266,13 @@ impl<'a, T: RealField + Copy, const N: usize> Governor<'a, T, N> {
         let own = Rows { k: timed.k, assumed: whole.inner.assumed };
         if from == zero && x == timed.x0 && target == timed.x2 && timed.is_passed() {
             // On the timed motion, which is proved.
-            self.go([from, one], timed, own, phase);
+            self.go(from, timed, own, phase);
             return true;
         }
         let (width, here) = (one - from, timed.x(from));
         let rest;
         let part = if from > zero {
-            rest = whole.part(from, one);
+            rest = whole.part(from);
             &rest
         } else {
             whole
@@ -331,52 +318,12 @@ impl<'a, T: RealField + Copy, const N: usize> Governor<'a, T, N> {
         if let Some(choice) = self.choice.get_mut(end) {
             *choice = at;
         }
-        let is_stop = can_stop && !self.wants_to_move();
-        let sooner = if is_stop { self.rest_inside(whole, from, &law, &rows) } else { None };
-        let (to, law, rows) = sooner.unwrap_or((one, law, rows));
-        self.go([from, to], law, rows, phase);
+        self.go(from, law, rows, phase);
         true
     }
 
-    /// On the way of a law to rest at the end of the segment a rest inside it that comes sooner, from where the arm gets on again.
-    fn rest_inside(&self, whole: &Segment<T, N>, from: T, law: &Law<T>, rows: &Rows<T>) -> Option<(T, Law<T>, Rows<T>)> {
-        let (zero, one) = (T::zero(), T::one());
-        let Timing { limits, friction, .. } = &self.timing;
-        if law.x2 > zero {
-            return None;
-        }
-        let mut formed = Formed::new();
-        let (mut least, mut found) = (zero, (one, *law, *rows));
-        for _ in 0..HALVINGS {
-            let share = (least + found.0) * lit(0.5);
-            let part = whole.part(from, from + (one - from) * share);
-            let rows = Rows { k: rows.k * share * share, assumed: rows.assumed };
-            let law = Law { length: part.length, x0: law.x0, k: rows.k, x2: zero };
-            let mut trial = Trial::new(&part, limits, friction, rows.assumed, law.x0, self.first, &mut formed);
-            if law.is_passed() && trial.nearest(rows.k, &rows.assumed, [zero; 2], zero, |_| true).is_some() {
-                found = (share, law, rows);
-            } else {
-                least = share;
-            }
-        }
-        let (share, law, rows) = found;
-        let (to, width) = (from + (one - from) * share, (one - from) * (one - share));
-        let rest = whole.part(to, one);
-        if share == one || rest.unheld(false, limits, friction).is_some() {
-            return None;
-        }
-        let (others, next) = (Candidates::new(&self.timing, whole), self.next(self.segment));
-        let mut trial = Trial::new(&rest, limits, friction, rest.inner.assumed, zero, self.first, &mut formed);
-        let leads_on = (0..ROWS).filter_map(|index| others.rows(index, None)).any(|Rows { k, assumed }| {
-            let k = k * width * width;
-            let x2 = trial.nearest(k, &assumed, next, lit(1e30), |_| true);
-            x2.is_some_and(|x2| Law { length: rest.length, x0: zero, k, x2 }.is_passed())
-        });
-        leads_on.then_some((to, law, rows))
-    }
-
-    fn go(&mut self, [from, to]: [T; 2], law: Law<T>, rows: Rows<T>, phase: Phase) {
-        (self.from, self.to, self.law, self.rows, self.phase) = (from, to, law, rows, phase);
+    fn go(&mut self, from: T, law: Law<T>, rows: Rows<T>, phase: Phase) {
+        (self.from, self.law, self.rows, self.phase) = (from, law, rows, phase);
         (self.duration, self.time) = (law.duration(), T::zero());
     }
 }

@@ -165,14 +165,14 @@ impl<T: RealField + Copy, const N: usize> Segment<T, N> {
         }
     }
 
-    /// The part between two fractions (de Casteljau).
-    pub(super) fn part(&self, from: T, to: T) -> Self {
-        let mut part = Self { start: self.start + self.length * from, length: self.length * (to - from), ..*self };
+    /// The part from the fraction `from` to the end (de Casteljau).
+    pub(super) fn part(&self, from: T) -> Self {
+        let rest = T::one() - from;
+        let mut part = Self { start: self.start + self.length * from, length: self.length * rest, ..*self };
         for of in part.torques.iter_mut().chain(&mut part.rates).flatten().chain(&mut part.tool) {
             let [a, b, c] = of.quadratic;
-            let [[a, b], [c, d]] = [from, to].map(|t| [a * (T::one() - t) + b * t, b * (T::one() - t) + c * t]);
-            let at = |[left, right]: [T; 2], t: T| left * (T::one() - t) + right * t;
-            of.quadratic = [at([a, b], from), at([a, b], to), at([c, d], to)];
+            let (left, right) = (a * rest + b * from, b * rest + c * from);
+            of.quadratic = [left * rest + right * from, right, c];
         }
         part
     }
